@@ -1,0 +1,54 @@
+#pragma once
+// The seam between the driver and whatever carries its bytes: the in-process simulated rig, or the
+// real USB libraries. One Transport is one opened rig, both interfaces together. It moves bytes and
+// waits; it knows no meaning. Every wait has a deadline on the transport's own clock.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "proc/core/result.h"
+#include "proc/core/stopwatch.h"
+
+namespace gonio::driver {
+
+inline constexpr std::size_t kReportBytes = 64;
+
+/// One HID report; byte 0 is the report id.
+using Report = std::array<std::uint8_t, kReportBytes>;
+
+/// What the descriptors say of an opened rig (PROTOCOL.md 1).
+struct DeviceStrings {
+    std::uint16_t vendor = 0;
+    std::uint16_t product = 0;
+    std::string serial;
+    std::string protocol;  ///< string descriptor 240, e.g. "GRP/1.0"
+};
+
+class Transport {
+public:
+    virtual ~Transport() = default;
+
+    [[nodiscard]] virtual DeviceStrings strings() const = 0;
+    /// The clock on which waits are counted; virtual for a simulated rig.
+    [[nodiscard]] virtual const Clock& clock() const = 0;
+
+    /// HID output report (COMMAND).
+    virtual Result<void> write(const Report& report) = 0;
+    virtual Result<void> setFeature(const Report& report) = 0;
+    [[nodiscard]] virtual Result<Report> getFeature(std::uint8_t id) = 0;
+
+    /// The next HID input report, or nothing when `wait` has passed.
+    [[nodiscard]] virtual Result<std::optional<Report>> readInput(Nanoseconds wait) = 0;
+    /// The next bulk transfer (one chunk, or whatever came), or nothing when `wait` has passed.
+    [[nodiscard]] virtual Result<std::optional<std::vector<std::uint8_t>>> readBulk(
+        Nanoseconds wait) = 0;
+    /// SET_INTERFACE(1, 0): flush the stream; it also clears a halt.
+    virtual Result<void> resetStream() = 0;
+};
+
+}  // namespace gonio::driver

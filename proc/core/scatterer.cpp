@@ -1,0 +1,20 @@
+#include "proc/core/scatterer.h"
+
+#include <cmath>
+#include <limits>
+
+namespace gonio {
+
+Answer Answer::none(Flags why, Source source) {
+    Answer answer;
+    answer.f = LedBands::all(std::numeric_limits<double>::quiet_NaN());
+    answer.flags = why;
+    answer.source = source;
+    return answer;
+}
+
+bool Answer::present() const {
+    return !std::isnan(f.value[0]) && !std::isnan(f.value[1]) && !std::isnan(f.value[2]);
+}
+
+}  // namespace gonio

@@ -1,0 +1,22 @@
+#pragma once
+// A perceptually even ramp from dark blue over green to yellow: equal steps look equal, and it
+// stays ordered in grey and for colour-blind eyes.
+
+#include <string>
+
+namespace gonio::proc {
+
+/// "#rrggbb" at position t, clamped to [0, 1].
+[[nodiscard]] std::string rampColour(double t);
+
+/// A decade axis that holds [lowest, highest]; both positive.
+struct LogAxis {
+    int firstDecade = -3;
+    int lastDecade = 0;
+
+    [[nodiscard]] static LogAxis covering(double lowest, double highest);
+    /// 0 at the first decade, 1 at the last, clamped; value > 0.
+    [[nodiscard]] double position(double value) const;
+};
+
+}  // namespace gonio::proc

@@ -1,0 +1,50 @@
+#pragma once
+// The few SVG elements that our plots are made of. Coordinates are user units (pixels at scale 1),
+// x to the right, y down. Text is escaped.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace gonio::proc {
+
+struct Point {
+    double x = 0;
+    double y = 0;
+};
+
+struct Stroke {
+    std::string colour = "#333";
+    double width = 1;
+    std::string dash;  ///< e.g. "3 3"; empty: solid
+};
+
+enum class Anchor {
+    Start,
+    Middle,
+    End
+};
+
+class Svg {
+public:
+    Svg(double width, double height);
+
+    void line(Point from, Point to, const Stroke& stroke);
+    void polyline(const std::vector<Point>& points, const Stroke& stroke);
+    void polygon(const std::vector<Point>& points, std::string_view fill, double opacity);
+    void circle(Point centre, double radius, const Stroke& stroke);
+    void rectangle(Point corner, Point size, std::string_view fill);
+    /// Ready-made path data, stroked one unit wide: runs of raster pixels.
+    void runs(std::string_view pathData, std::string_view colour);
+    void text(Point at, std::string_view words, Anchor anchor = Anchor::Start, double size = 11);
+
+    /// The whole document.
+    [[nodiscard]] std::string document() const;
+
+private:
+    double width_;
+    double height_;
+    std::string body_;
+};
+
+}  // namespace gonio::proc

@@ -1,0 +1,49 @@
+#include "proc/core/number_text.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace gonio {
+namespace {
+
+TEST(NumberText, ReadsWholeFiniteNumbersOnly) {
+    EXPECT_EQ(parseDouble("1.5e-3"), 1.5e-3);
+    EXPECT_EQ(parseDouble("+2"), 2.0);
+    EXPECT_EQ(parseDouble("-0.25"), -0.25);
+    for (const char* bad :
+         {"", "banana", "1.5x", "1,5", " 1", "1 ", "nan", "inf", "1e400", "+-1", "+"}) {
+        EXPECT_FALSE(parseDouble(bad)) << bad;
+    }
+}
+
+TEST(NumberText, ReadsWholeIntegersOnly) {
+    EXPECT_EQ(parseInteger("-12"), -12);
+    for (const char* bad : {"", "1.0", "12a", "99999999999999999999"}) {
+        EXPECT_FALSE(parseInteger(bad)) << bad;
+    }
+}
+
+TEST(NumberText, ShortestReadsBackToTheSameBits) {
+    std::mt19937_64 random(3);
+    for (int i = 0; i < 20000; ++i) {
+        const double value = std::bit_cast<double>(random());
+        if (!std::isfinite(value)) continue;
+        const auto back = parseDouble(shortest(value));
+        ASSERT_TRUE(back);
+        EXPECT_EQ(std::bit_cast<std::uint64_t>(*back), std::bit_cast<std::uint64_t>(value));
+    }
+    EXPECT_EQ(shortest(0.1), "0.1");
+    EXPECT_EQ(shortest(0.1F), "0.1");
+}
+
+TEST(NumberText, FixedHoldsTheLargestDouble) {
+    EXPECT_EQ(fixed(2.345, 2), "2.35");
+    EXPECT_EQ(fixed(std::numeric_limits<double>::max(), 2).size(), 312U);
+}
+
+}  // namespace
+}  // namespace gonio
