@@ -1,0 +1,49 @@
+#include "driver/protocol/crc.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <string>
+#include <vector>
+
+namespace gonio::driver {
+namespace {
+
+std::vector<std::uint8_t> digits() {
+    const std::string text = "123456789";
+    return {text.begin(), text.end()};
+}
+
+/// The definition, bit by bit: the slow twin of the tables.
+std::uint32_t crc32cBitwise(const std::vector<std::uint8_t>& bytes) {
+    std::uint32_t crc = 0xFFFFFFFFU;
+    for (std::uint8_t byte : bytes) {
+        crc ^= byte;
+        for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1) ^ ((crc & 1U) != 0 ? 0x82F63B78U : 0U);
+    }
+    return ~crc;
+}
+
+TEST(Crc, HasTheCheckValues) {
+    EXPECT_EQ(crc16(digits()), 0x29B1);
+    EXPECT_EQ(crc32c(digits()), 0xE3069283U);
+    EXPECT_EQ(crc16({}), 0xFFFF);
+    EXPECT_EQ(crc32c({}), 0U);
+}
+
+TEST(Crc32c, MatchesReferenceAtEveryLengthAndSplit) {
+    std::mt19937 random(1);
+    for (std::size_t length = 0; length < 70; ++length) {
+        std::vector<std::uint8_t> bytes(length);
+        for (auto& byte : bytes) byte = static_cast<std::uint8_t>(random());
+        EXPECT_EQ(crc32c(bytes), crc32cBitwise(bytes));
+        const std::size_t split = length == 0 ? 0 : random() % length;
+        Crc32c pieces;
+        pieces.add(std::span(bytes).first(split));
+        pieces.add(std::span(bytes).subspan(split));
+        EXPECT_EQ(pieces.value(), crc32c(bytes));
+    }
+}
+
+}  // namespace
+}  // namespace gonio::driver
