@@ -1,0 +1,50 @@
+#pragma once
+// How wrong the reference tiles really are, against their certificates: the white by 0.5 % common
+// to all, and 0.3 % per direction, LED and band (a smooth field with unit variance everywhere); the
+// black by 10 % of its reflectance. One draw is one laboratory's tiles.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "proc/core/bands.h"
+#include "proc/core/direction.h"
+#include "proc/core/result.h"
+
+namespace gonio::sim {
+
+inline constexpr int kStrata = 20;
+
+class ReferenceErrors {
+public:
+    /// All errors zero.
+    ReferenceErrors() = default;
+    [[nodiscard]] static ReferenceErrors random(std::uint64_t seed);
+    /// Run 0..19 of 20: over the runs each component takes each of its 20 quantiles (k + 0.5) / 20
+    /// once, in an order of its own.
+    [[nodiscard]] static ReferenceErrors stratified(int run, std::uint64_t seed);
+    /// "none", "random" or "stratum:K".
+    [[nodiscard]] static Result<ReferenceErrors> parse(std::string_view text, std::uint64_t seed);
+
+    /// Factors on the certified f.
+    [[nodiscard]] double white(int led, Band band, const Direction& wo) const;
+    [[nodiscard]] double black() const;
+
+    /// Standard deviate of a component, for tests: 0 common white, 1 black, from 2 on field nodes.
+    [[nodiscard]] double deviate(std::uint64_t component) const;
+    /// The field of the white: standard normal at every direction.
+    [[nodiscard]] double field(int led, Band band, const Direction& wo) const;
+
+private:
+    enum class Kind {
+        None,
+        Random,
+        Stratified
+    };
+    Kind kind_ = Kind::None;
+    int run_ = 0;
+    std::uint64_t seed_ = 0;
+};
+
+}  // namespace gonio::sim

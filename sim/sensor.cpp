@@ -1,0 +1,93 @@
+#include "sim/sensor.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "proc/core/parallel.h"
+#include "sim/random.h"
+
+namespace gonio::sim {
+namespace {
+
+constexpr double kFullWell = 10500;      // e-
+constexpr double kReadNoise = 2.4;       // e-
+constexpr double kElectronsPerDn = 2.6;  // e-/DN
+constexpr double kDarkAt25 = 3;          // e-/s
+constexpr double kDoublingKelvin = 7;
+constexpr double kSensorCelsius = 25;
+constexpr double kNonUniformity = 0.007;
+constexpr std::int64_t kOffsetNs = 14'260;  // between the line time and the effective exposure
+constexpr std::int64_t kLineNs = 10LL * kExposureStep;
+
+}  // namespace
+
+Nanoseconds grantedExposure(std::uint32_t requestedUs) {
+    const std::int64_t wanted = 1000LL * requestedUs - kOffsetNs;
+    const std::int64_t lines = std::max<std::int64_t>(1, (wanted + kLineNs / 2) / kLineNs);
+    return Nanoseconds(lines * kLineNs + kOffsetNs);
+}
+
+Sensor::Sensor(const std::string& serial) : key_(0x70726E75) {
+    for (char c : serial) key_ = mixed(key_, static_cast<unsigned char>(c));
+    response_ = Image<float>(kSensorSize);
+    parallelFor(response_.pixels().size(), [&](IndexRange range) {
+        for (std::size_t i = range.begin; i < range.end; ++i) {
+            response_.pixels()[i] = static_cast<float>(response(i));
+        }
+    });
+}
+
+double Sensor::response(std::uint64_t pixel) const {
+    return 1 + kNonUniformity * gaussian(key_, pixel);
+}
+
+Image<std::uint16_t> Sensor::expose(const Image<float>* rate,
+                                    double level,
+                                    Nanoseconds exposure,
+                                    Size size,
+                                    const NoiseKey& key,
+                                    int binning) const {
+    const double seconds = static_cast<double>(exposure.count()) * 1e-9;
+    const double dark = kDarkAt25 * std::exp2((kSensorCelsius - 25) / kDoublingKelvin) * seconds;
+    const std::uint64_t shotKey = mixed(mixed(mixed(key.seed, key.planStep), key.frameIndex), 1);
+    const std::uint64_t readKey = mixed(shotKey, 2);
+    Image<std::uint16_t> full(size);
+    parallelFor(static_cast<std::size_t>(size.height), [&](IndexRange rows) {
+        for (std::size_t row = rows.begin; row < rows.end; ++row) {
+            for (int x = 0; x < size.width; ++x) {
+                const int y = static_cast<int>(row);
+                const std::uint64_t pixel = row * static_cast<std::uint64_t>(kSensorSize.width) +
+                                            static_cast<std::uint64_t>(x);
+                const double light = rate == nullptr ? 0
+                                                     : double{rate->at(x, y)} * level * seconds *
+                                                           double{response_.at(x, y)};
+                const double electrons =
+                    std::min(kFullWell, poisson(light + dark, uniform(shotKey, pixel))) +
+                    kReadNoise * gaussian(readKey, pixel);
+                const double dn = std::round(electrons / kElectronsPerDn) + kBlackLevel;
+                full.at(x, y) = static_cast<std::uint16_t>(std::clamp(dn, 0.0, double{kFullScale}));
+            }
+        }
+    });
+    if (binning == 1) return full;
+    Image<std::uint16_t> binned({size.width / binning, size.height / binning});
+    for (int y = 0; y < binned.height(); ++y) {
+        for (int x = 0; x < binned.width(); ++x) {
+            int sum = 0;
+            bool saturated = false;
+            for (int j = 0; j < binning; ++j) {
+                for (int i = 0; i < binning; ++i) {
+                    const int dn = full.at(x * binning + i, y * binning + j);
+                    sum += dn;
+                    saturated = saturated || dn >= kFullScale;
+                }
+            }
+            const int members = binning * binning;
+            binned.at(x, y) =
+                saturated ? kFullScale : static_cast<std::uint16_t>((sum + members / 2) / members);
+        }
+    }
+    return binned;
+}
+
+}  // namespace gonio::sim

@@ -1,0 +1,52 @@
+#pragma once
+// The sensor: 1280 x 1024 mono, 12 bit, full well 10.5 ke-, read noise 2.4 e-, 2.6 e-/DN, black
+// level 60 DN, dark current 3 e-/s at 25 degC doubling each 7 K, photo-response non-uniformity 0.7
+// % drawn from the serial. Noise is a pure function of (seed, plan step, frame index, pixel).
+
+#include <cstdint>
+#include <string>
+
+#include "proc/core/image.h"
+#include "proc/core/units.h"
+
+namespace gonio::sim {
+
+inline constexpr Size kSensorSize{1280, 1024};
+inline constexpr std::uint16_t kBlackLevel = 60;
+inline constexpr std::uint16_t kFullScale = 4095;
+inline constexpr std::uint32_t kExposureMinUs = 20;
+inline constexpr std::uint32_t kExposureMaxUs = 1'000'000;
+inline constexpr std::uint16_t kExposureStep = 550;  ///< 0.01 us: one line
+
+/// The effective exposure that the sensor gives for a request: whole lines plus a fixed 14.26 us.
+[[nodiscard]] Nanoseconds grantedExposure(std::uint32_t requestedUs);
+
+struct NoiseKey {
+    std::uint64_t seed = 0;
+    std::uint64_t planStep = 0;
+    std::uint64_t frameIndex = 0;
+};
+
+class Sensor {
+public:
+    explicit Sensor(const std::string& serial);
+
+    /// One exposure of the pixels whose light is `rate` times `level` in electrons per second;
+    /// `corner` is the first pixel's place on the sensor. Empty rate: dark. Binned as the protocol
+    /// says.
+    [[nodiscard]] Image<std::uint16_t> expose(const Image<float>* rate,
+                                              double level,
+                                              Nanoseconds exposure,
+                                              Size size,
+                                              const NoiseKey& key,
+                                              int binning) const;
+
+    /// Gain of the pixel relative to the mean: 1 +- 0.7 %.
+    [[nodiscard]] double response(std::uint64_t pixel) const;
+
+private:
+    std::uint64_t key_;
+    Image<float> response_;  // of the largest window that the rig reads
+};
+
+}  // namespace gonio::sim

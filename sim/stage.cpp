@@ -1,0 +1,100 @@
+#include "sim/stage.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "proc/core/parallel.h"
+
+namespace gonio::sim {
+namespace {
+
+constexpr double kSourceRadius = 0.5 * kPi / 180;
+constexpr double kMirrorReflectance = 0.9;
+constexpr int kDiscSamples = 4;  // per pixel side, at the disc's edge
+
+double orZero(double f) { return std::isfinite(f) ? f : 0; }
+
+/// f cos(theta_o) of the placement in one direction, per band.
+LedBands surfaceLight(const Placement& placement,
+                      const ReferenceErrors& errors,
+                      int led,
+                      const Direction& wo) {
+    if (placement.surface == nullptr) return {};
+    const Answer answer = placement.surface->answer({.in = ledDirection(led), .out = wo});
+    LedBands light;
+    for (Band b : kBands) {
+        double factor = 1;
+        if (placement.role == Role::White) factor = errors.white(led, b, wo);
+        if (placement.role == Role::Black) factor = errors.black();
+        light[b] = orZero(answer.f[b]) * wo.z() * factor;
+    }
+    return light;
+}
+
+/// The share of the pixel that the mirror image of the source covers.
+double discShare(const Optics& optics, ImagePoint corner, const Direction& image) {
+    int inside = 0;
+    for (int i = 0; i < kDiscSamples; ++i) {
+        for (int j = 0; j < kDiscSamples; ++j) {
+            const auto wo = optics.directionAt(
+                {corner.x + (i + 0.5) / kDiscSamples, corner.y + (j + 0.5) / kDiscSamples});
+            if (wo && angleBetween({image, *wo}).value() <= kSourceRadius) ++inside;
+        }
+    }
+    return static_cast<double>(inside) / (kDiscSamples * kDiscSamples);
+}
+
+double mirrorLight(const Optics& optics,
+                   ImagePoint corner,
+                   const Direction& wo,
+                   const Direction& image) {
+    const double away = angleBetween({image, wo}).value();
+    if (away > 2 * kSourceRadius) return 0;
+    // f cos(theta_o) = reflectance / solid angle of the source.
+    const double peak = kMirrorReflectance / (kPi * kSourceRadius * kSourceRadius);
+    return peak * discShare(optics, corner, image);
+}
+
+}  // namespace
+
+Direction mirrored(const Direction& light, const Wedge& wedge) {
+    const Eigen::Vector3d normal =
+        Eigen::AngleAxisd(wedge.aboutY.value(), Eigen::Vector3d::UnitY()) *
+        (Eigen::AngleAxisd(wedge.aboutX.value(), Eigen::Vector3d::UnitX()) *
+         Eigen::Vector3d::UnitZ());
+    const Eigen::Vector3d& wi = light.vector();
+    return *Direction::fromVector(2 * normal.dot(wi) * normal - wi);
+}
+
+RateImages rateImages(const Placement& placement,
+                      const ReferenceErrors& errors,
+                      const Optics& optics,
+                      Size size,
+                      ImagePoint corner,
+                      int led) {
+    RateImages images{Image<float>(size), Image<float>(size), Image<float>(size)};
+    const Direction image = mirrored(ledDirection(led), placement.wedge);
+    parallelFor(static_cast<std::size_t>(size.height), [&](IndexRange rows) {
+        for (std::size_t row = rows.begin; row < rows.end; ++row) {
+            for (int x = 0; x < size.width; ++x) {
+                const ImagePoint pixel{corner.x + x, corner.y + static_cast<double>(row)};
+                const auto wo = optics.directionAt({pixel.x + 0.5, pixel.y + 0.5});
+                if (!wo) continue;
+                LedBands light = surfaceLight(placement, errors, led, *wo);
+                if (placement.role == Role::Mirror) {
+                    light = LedBands::all(mirrorLight(optics, pixel, *wo, image));
+                }
+                const double stray = strayLight(led, *wo);
+                const double lens = optics.relativeSolidAngle(*wo) * optics.vignetting(*wo);
+                for (Band b : kBands) {
+                    images[index(b)].at(x, static_cast<int>(row)) =
+                        static_cast<float>(ledRate(led, b) * lens * (light[b] + stray));
+                }
+            }
+        }
+    });
+    return images;
+}
+
+}  // namespace gonio::sim

@@ -1,0 +1,67 @@
+#include "sim/random.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace gonio::sim {
+namespace {
+
+struct Moments {
+    double mean, variance, skewness;
+};
+
+template <class Draw>
+Moments momentsOf(int n, Draw draw) {
+    double s1 = 0, s2 = 0, s3 = 0;
+    for (int i = 0; i < n; ++i) {
+        const double x = draw(static_cast<std::uint64_t>(i));
+        s1 += x;
+        s2 += x * x;
+        s3 += x * x * x;
+    }
+    const double mean = s1 / n;
+    const double variance = s2 / n - mean * mean;
+    const double third = s3 / n - 3 * mean * s2 / n + 2 * mean * mean * mean;
+    return {mean, variance, third / std::pow(variance, 1.5)};
+}
+
+constexpr int kDraws = 400'000;  // standard error of a mean: sigma / 632
+
+TEST(Random, GaussianHasStandardMoments) {
+    const Moments m = momentsOf(kDraws, [](std::uint64_t i) { return gaussian(1, i); });
+    EXPECT_NEAR(m.mean, 0, 0.007);
+    EXPECT_NEAR(m.variance, 1, 0.01);
+    EXPECT_NEAR(m.skewness, 0, 0.02);
+}
+
+TEST(Random, QuantileIsTheInverseOfTheDistribution) {
+    for (double x = -8; x <= 8; x += 0.25) {
+        const double u = 0.5 * std::erfc(-x / std::sqrt(2.0));
+        // Near 1 the argument itself has lost the digits.
+        const double tolerance = 2e-9 * std::abs(x) + 1e-9 + (x > 5 ? 0.5 : 0);
+        EXPECT_NEAR(normalQuantile(u), x, tolerance);
+    }
+}
+
+TEST(Random, PoissonHasItsMomentsOnBothSidesOfTheThreshold) {
+    for (double mean : {0.0, 0.1, 0.5, 5.0, 29.9, 30.0, 30.1, 100.0, 10000.0}) {
+        const Moments m =
+            momentsOf(kDraws, [&](std::uint64_t i) { return poisson(mean, uniform(7, i)); });
+        const double sigma = std::sqrt(mean);
+        EXPECT_NEAR(m.mean, mean, 0.008 * sigma);
+        EXPECT_NEAR(m.variance, mean, 0.02 * mean + 0.02 * sigma);
+        if (mean > 1) {
+            EXPECT_NEAR(m.skewness, 1 / sigma, 0.03);
+        }
+    }
+}
+
+TEST(Random, IsAPureFunctionOfKeyAndCounter) {
+    EXPECT_EQ(uniform(3, 4), uniform(3, 4));
+    EXPECT_NE(uniform(3, 4), uniform(3, 5));
+    EXPECT_NE(mixed(1, 2), mixed(2, 1));
+}
+
+}  // namespace
+}  // namespace gonio::sim

@@ -1,0 +1,71 @@
+#include "sim/reference_errors.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/random.h"
+
+namespace gonio::sim {
+namespace {
+
+TEST(ReferenceErrors, NoneChangesNothing) {
+    const ReferenceErrors none;
+    EXPECT_EQ(none.white(2, Band::B, Direction()), 1);
+    EXPECT_EQ(none.black(), 1);
+}
+
+TEST(ReferenceErrors, StratifiedRunsTakeEachQuantileOnce) {
+    for (std::uint64_t component : {0UL, 1UL, 2UL, 777UL}) {
+        std::vector<double> seen;
+        for (int run = 0; run < kStrata; ++run) {
+            seen.push_back(ReferenceErrors::stratified(run, 5).deviate(component));
+        }
+        std::sort(seen.begin(), seen.end());
+        for (int k = 0; k < kStrata; ++k) {
+            EXPECT_DOUBLE_EQ(seen[static_cast<std::size_t>(k)],
+                             normalQuantile((k + 0.5) / kStrata));
+        }
+    }
+}
+
+TEST(ReferenceErrors, ComponentsHaveOrdersOfTheirOwn) {
+    int same = 0;
+    for (int run = 0; run < kStrata; ++run) {
+        const ReferenceErrors errors = ReferenceErrors::stratified(run, 5);
+        same += errors.deviate(0) == errors.deviate(1) ? 1 : 0;
+    }
+    EXPECT_LT(same, 8);
+}
+
+TEST(ReferenceErrors, FieldHasUnitVarianceEverywhere) {
+    for (double phi : {0.0, 13.0, 100.0}) {
+        for (double theta : {0.0, 2.5, 33.3}) {
+            const Direction wo =
+                Direction::fromSpherical(Radians::fromDegrees(theta), Radians::fromDegrees(phi));
+            double squares = 0;
+            constexpr int kSeeds = 4000;
+            for (int seed = 0; seed < kSeeds; ++seed) {
+                const double z =
+                    ReferenceErrors::random(static_cast<std::uint64_t>(seed)).field(1, Band::G, wo);
+                squares += z * z;
+            }
+            EXPECT_NEAR(squares / kSeeds, 1, 5 * std::sqrt(2.0 / kSeeds));
+        }
+    }
+}
+
+TEST(ReferenceErrors, ReadsItsThreeWords) {
+    EXPECT_TRUE(ReferenceErrors::parse("none", 1));
+    EXPECT_TRUE(ReferenceErrors::parse("random", 1));
+    EXPECT_TRUE(ReferenceErrors::parse("stratum:19", 1));
+    for (const char* bad : {"", "stratum:20", "stratum:-1", "stratum:x", "some"}) {
+        const auto refused = ReferenceErrors::parse(bad, 1);
+        ASSERT_FALSE(refused) << bad;
+        EXPECT_EQ(refused.error().kind, ErrorKind::Usage);
+    }
+}
+
+}  // namespace
+}  // namespace gonio::sim

@@ -1,0 +1,154 @@
+// The driver on the simulated rig, in virtual time: every byte passes the codec.
+
+#include <gtest/gtest.h>
+
+#include "driver/rig.h"
+#include "proc/models/spec.h"
+#include "sim/in_process.h"
+
+namespace gonio {
+namespace {
+
+constexpr Window kWindow{.x = 128, .y = 0, .size = {1024, 1024}, .binning = 1};
+constexpr std::uint64_t kSession = 0x1122334455667788;
+
+sim::Placement lambert() {
+    return {.role = sim::Role::Sample,
+            .surface = std::move(*proc::makeModel("lambert,albedo=0.5")),
+            .wedge = {}};
+}
+
+TEST(RigOnSim, TakesFramesAsPlanned) {
+    sim::InProcessDoor door({.serial = "SIM-0007", .seed = 3});
+    door.device().place(lambert());
+    auto rig = driver::Rig::open(door, kSession);
+    ASSERT_TRUE(rig) << rig.error().message;
+    EXPECT_EQ(rig->identify().serial, "SIM-0007");
+    EXPECT_EQ(rig->identify().ledAngles.size(), 4U);
+    ASSERT_TRUE(rig->configure(kWindow));
+    const auto frames = rig->capture({.planStep = 5,
+                                      .led = 1,
+                                      .levels = LedLevels::only(Band::G, 65535),
+                                      .exposure = Microseconds(320),
+                                      .frames = 3});
+    ASSERT_TRUE(frames) << frames.error().message;
+    ASSERT_EQ(frames->size(), 3U);
+    const Frame& frame = frames->front();
+    EXPECT_EQ(frame.pixels.size(), kWindow.size);
+    EXPECT_EQ(frame.led, 1);
+    EXPECT_EQ(frame.exposure.granted, sim::grantedExposure(320));
+    EXPECT_EQ(frame.captureId >> 16, 5U);
+    // 0.5/pi x 0.95 x 4.5e7 e-/s x 320 us / 2.6 e-/DN + 60 DN in the middle, near enough.
+    EXPECT_NEAR(frame.pixels.at(512, 512), 898, 60);
+    EXPECT_EQ(rig->anomalies(), driver::Anomalies{});
+}
+
+TEST(RigOnSim, DarkFramesShowTheBlackLevel) {
+    sim::InProcessDoor door({});
+    auto rig = driver::Rig::open(door, kSession);
+    ASSERT_TRUE(rig);
+    ASSERT_TRUE(rig->configure(kWindow));
+    const auto frames = rig->capture({.planStep = 1,
+                                      .led = std::nullopt,
+                                      .levels = {},
+                                      .exposure = Microseconds(5000),
+                                      .frames = 1});
+    ASSERT_TRUE(frames) << frames.error().message;
+    double sum = 0;
+    for (std::uint16_t dn : frames->front().pixels.pixels()) sum += dn;
+    EXPECT_NEAR(sum / static_cast<double>(kWindow.size.pixels()), 60, 0.05);
+    EXPECT_FALSE(frames->front().led);
+}
+
+TEST(RigOnSim, IsDarkAfterItIsGivenBack) {
+    sim::InProcessDoor door({});
+    door.device().place(lambert());
+    {
+        auto rig = driver::Rig::open(door, kSession);
+        ASSERT_TRUE(rig);
+        ASSERT_TRUE(rig->configure(kWindow));
+        ASSERT_TRUE(rig->capture({.planStep = 1,
+                                  .led = 0,
+                                  .levels = LedLevels::only(Band::R, 65535),
+                                  .exposure = Microseconds(100),
+                                  .frames = 1}));
+    }
+    const auto report =
+        door.device().getFeature(static_cast<std::uint8_t>(driver::ReportId::Status));
+    ASSERT_TRUE(report);
+    const auto status = driver::decodeStatus(*report);
+    ASSERT_TRUE(status);
+    EXPECT_EQ(status->ledOn, 0U);
+    EXPECT_EQ(status->owner, driver::Owner::None);
+}
+
+TEST(RigOnSim, RefusesASecondOwner) {
+    sim::InProcessDoor door({});
+    auto first = driver::Rig::open(door, kSession);
+    ASSERT_TRUE(first);
+    auto second = driver::Rig::open(door, kSession + 1);
+    ASSERT_FALSE(second);
+    EXPECT_EQ(second.error().kind, ErrorKind::Busy);
+}
+
+TEST(RigOnSim, GoesDarkWithoutAHeartbeat) {
+    sim::InProcessDoor door({});
+    door.device().place(lambert());
+    auto rig = driver::Rig::open(door, kSession);
+    ASSERT_TRUE(rig);
+    ASSERT_TRUE(rig->configure(kWindow));
+    ASSERT_TRUE(rig->capture({.planStep = 1,
+                              .led = 2,
+                              .levels = LedLevels::only(Band::B, 100),
+                              .exposure = Microseconds(100),
+                              .frames = 1}));
+    door.device().advanceTo(door.device().now() + std::chrono::seconds(3));
+    const auto status = driver::decodeStatus(*door.device().getFeature(0x10));
+    ASSERT_TRUE(status);
+    EXPECT_EQ(status->ledOn, 0U);
+    EXPECT_EQ(status->owner, driver::Owner::Lapsed);
+    EXPECT_EQ(door.device().stats().lapses, 1U);
+}
+
+TEST(RigOnSim, RefusesToLightWithTheInterlockOpen) {
+    sim::InProcessDoor door({});
+    door.device().setInterlock(0);
+    auto rig = driver::Rig::open(door, kSession);
+    ASSERT_TRUE(rig);
+    ASSERT_TRUE(rig->configure(kWindow));
+    const auto frames = rig->capture({.planStep = 1,
+                                      .led = 0,
+                                      .levels = LedLevels::only(Band::R, 1),
+                                      .exposure = Microseconds(100),
+                                      .frames = 1});
+    ASSERT_FALSE(frames);
+    EXPECT_EQ(frames.error().deviceStatus, driver::status::kInterlock);
+    EXPECT_NE(frames.error().message.find("INTERLOCK"), std::string::npos);
+}
+
+TEST(RigOnSim, RefusesAWindowOffTheGrid) {
+    sim::InProcessDoor door({});
+    auto rig = driver::Rig::open(door, kSession);
+    ASSERT_TRUE(rig);
+    const auto refused = rig->configure({.x = 129, .y = 0, .size = {1024, 1024}, .binning = 1});
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().deviceStatus, driver::status::kBadArg);
+}
+
+TEST(RigOnSim, BinnedWindowIsFourTimesSmaller) {
+    sim::InProcessDoor door({});
+    door.device().place(lambert());
+    auto rig = driver::Rig::open(door, kSession);
+    ASSERT_TRUE(rig);
+    ASSERT_TRUE(rig->configure({.x = 128, .y = 0, .size = {1024, 1024}, .binning = 2}));
+    const auto frames = rig->capture({.planStep = 9,
+                                      .led = 0,
+                                      .levels = LedLevels::only(Band::G, 65535),
+                                      .exposure = Microseconds(100),
+                                      .frames = 2});
+    ASSERT_TRUE(frames) << frames.error().message;
+    EXPECT_EQ(frames->front().pixels.size(), (Size{512, 512}));
+}
+
+}  // namespace
+}  // namespace gonio

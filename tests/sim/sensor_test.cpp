@@ -1,0 +1,82 @@
+#include "sim/sensor.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace gonio::sim {
+namespace {
+
+constexpr Size kSmall{400, 400};
+
+TEST(Sensor, GrantsWholeLinesPlusItsOffset) {
+    EXPECT_EQ(grantedExposure(20).count(), 5'500 + 14'260);
+    const double granted = static_cast<double>(grantedExposure(1000).count()) * 1e-3;
+    EXPECT_NEAR(granted, 1000, 2.75);
+}
+
+TEST(Sensor, SameKeySameFrameAnotherStepAnotherFrame) {
+    const Sensor sensor("SIM-0001");
+    const Image<float> rate(kSmall, 1e6F);
+    const auto frame = [&](NoiseKey key) {
+        return sensor.expose(&rate, 1, Nanoseconds(1'000'000), kSmall, key, 1);
+    };
+    EXPECT_EQ(frame({1, 2, 0}), frame({1, 2, 0}));
+    EXPECT_NE(frame({1, 2, 0}), frame({1, 3, 0}));
+    EXPECT_NE(frame({1, 2, 0}), frame({1, 2, 1}));
+    EXPECT_NE(frame({1, 2, 0}), frame({2, 2, 0}));
+}
+
+// Photon transfer: variance of the difference of two frames against the mean.
+TEST(Sensor, PhotonTransferGivesGainAndReadNoise) {
+    const Sensor sensor("SIM-0001");
+    const auto pair = [&](float electrons, double& mean, double& variance) {
+        const Image<float> rate(kSmall, electrons * 1e3F);
+        const auto a = sensor.expose(&rate, 1, Nanoseconds(1'000'000), kSmall, {1, 1, 0}, 1);
+        const auto b = sensor.expose(&rate, 1, Nanoseconds(1'000'000), kSmall, {1, 1, 1}, 1);
+        double sum = 0, squares = 0;
+        const auto n = static_cast<double>(a.pixels().size());
+        for (std::size_t i = 0; i < a.pixels().size(); ++i) {
+            const double d = double{1} * a.pixels()[i] - b.pixels()[i];
+            sum += a.pixels()[i];
+            squares += d * d;
+        }
+        mean = sum / n - kBlackLevel;
+        variance = squares / n / 2;
+    };
+    double darkMean = 0, darkVariance = 0, mean = 0, variance = 0;
+    pair(0, darkMean, darkVariance);
+    pair(5000, mean, variance);
+    // 160,000 pixels: the variance is known to 0.5 %.
+    EXPECT_NEAR((mean - darkMean) / (variance - darkVariance), 2.6, 0.04);
+    EXPECT_NEAR(std::sqrt(darkVariance - 1 / 12.0) * 2.6, 2.4, 0.05);
+    EXPECT_NEAR(darkMean, 0, 0.02);
+}
+
+TEST(Sensor, SaturatesAtFullScale) {
+    const Sensor sensor("SIM-0001");
+    const Image<float> rate({8, 8}, 1e9F);
+    const auto frame = sensor.expose(&rate, 1, Nanoseconds(1'000'000), {8, 8}, {1, 1, 0}, 1);
+    EXPECT_GE(frame.at(3, 3), kFullScale - 8);
+}
+
+TEST(Sensor, BinnedPixelIsTheMeanUnlessOneIsSaturated) {
+    const Sensor sensor("SIM-0001");
+    Image<float> rate({4, 4}, 1e6F);
+    const auto full = sensor.expose(&rate, 1, Nanoseconds(1'000'000), {4, 4}, {1, 1, 0}, 1);
+    const auto binned = sensor.expose(&rate, 1, Nanoseconds(1'000'000), {4, 4}, {1, 1, 0}, 2);
+    const int sum = full.at(0, 0) + full.at(1, 0) + full.at(0, 1) + full.at(1, 1);
+    EXPECT_EQ(binned.size(), (Size{2, 2}));
+    EXPECT_EQ(binned.at(0, 0), (sum + 2) / 4);
+}
+
+TEST(Sensor, ResponsesScatterBySevenTenthsOfAPerCent) {
+    const Sensor sensor("SIM-0001");
+    double squares = 0;
+    constexpr int kPixels = 20000;
+    for (std::uint64_t i = 0; i < kPixels; ++i) squares += std::pow(sensor.response(i) - 1, 2);
+    EXPECT_NEAR(std::sqrt(squares / kPixels), 0.007, 0.0002);
+}
+
+}  // namespace
+}  // namespace gonio::sim
