@@ -19,7 +19,7 @@ sim::Placement lambert() {
 }
 
 TEST(RigOnSim, TakesFramesAsPlanned) {
-    sim::InProcessDoor door({.serial = "SIM-0007", .seed = 3});
+    sim::InProcessDoor door({.serial = "SIM-0007", .seed = 3, .bootCount = 1, .errors = {}});
     door.device().place(lambert());
     auto rig = driver::Rig::open(door, kSession);
     ASSERT_TRUE(rig) << rig.error().message;
