@@ -1,62 +1,101 @@
 #pragma once
-// The command link to one rig: identify, claim, numbered commands with ACK,
-// heartbeat, input reports. Every command is done exactly once: it is repeated
-// with the same number until its ACK is known, by the input report or by
-// reading LAST_ACK. Every wait has a deadline on the transport's clock.
+// The rig link (PROTOCOL.md 2): a claimed rig that does numbered commands exactly once. Opening
+// checks the protocol string and IDENT, reads LIMITS, and claims the rig; destruction releases it,
+// which leaves it dark. Every wait has a deadline on the transport's clock: a silent rig is an
+// error after three sends, never a hang. While it waits for chunks the link feeds the heartbeat; a
+// caller that is busy elsewhere calls keepAlive(). Not for several threads at once. A rig of
+// another major version is refused and both versions are said; one that another session owns is
+// Busy; one that has rebooted since (another boot_id) is a Device error.
 
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <optional>
+#include <vector>
 
 #include "driver/protocol/reports.h"
 #include "driver/protocol/transport.h"
+#include "proc/core/result.h"
 
 namespace gonio::driver {
 
+struct LinkOptions {
+    std::uint64_t sessionId = 0;  ///< random, low half not 0; the same id takes its claim up again
+    std::uint16_t heartbeatMs = 2000;  ///< 500..10000
+};
+
+/// Reports that came and were of no use, and commands that had to be repeated.
+struct LinkCounters {
+    std::uint32_t badReports = 0;      ///< wrong CRC
+    std::uint32_t unknownReports = 0;  ///< ids that are not in the table
+    std::uint32_t foreignAcks = 0;     ///< of another session
+    std::uint32_t strayAcks = 0;       ///< ours, but not of the command that waits
+    std::uint32_t repeats = 0;         ///< commands sent again for want of an ACK
+    bool operator==(const LinkCounters&) const = default;
+};
+
 class RigLink {
 public:
-    /// Refuses another protocol major, naming both versions; claims the rig. Busy
-    /// when it is owned. `transport` must outlive the link. `sessionId`: random,
-    /// its low half not 0.
-    [[nodiscard]] static Result<RigLink> open(Transport& transport, std::uint64_t sessionId);
+    /// `transport` is borrowed and must outlive the link.
+    static Result<std::unique_ptr<RigLink>> open(Transport& transport, const LinkOptions& options);
+    ~RigLink();
+    RigLink(const RigLink&) = delete;
+    RigLink& operator=(const RigLink&) = delete;
 
+    [[nodiscard]] const DeviceStrings& strings() const { return strings_; }
     [[nodiscard]] const Ident& ident() const { return ident_; }
     [[nodiscard]] const Limits& limits() const { return limits_; }
-    [[nodiscard]] Transport& transport() { return *transport_; }
+    [[nodiscard]] const Clock& clock() const { return transport_->clock(); }
+    /// The claim was taken up again: settings, ACKs and frames are those of before.
+    [[nodiscard]] bool resumed() const { return resumed_; }
 
-    /// Sends one command and waits for its final ACK. An ACK other than OK is a
-    /// Device error that carries the status.
-    [[nodiscard]] Result<Arguments> command(Op op, const Arguments& arguments = {});
-    /// Reads what has come and sends a PING when the heartbeat needs it. Call it
-    /// while waiting.
+    /// Sends one command and waits for its final ACK; its result where the status is OK. Other
+    /// statuses are errors that carry it (Busy for NOT_OWNER and BUSY, else Device).
+    Result<Arguments> command(Op op, const Arguments& arguments = {});
+    /// Takes what has come, and sends a PING when one is due.
     Result<void> keepAlive();
-    /// The newest STATUS report seen.
-    [[nodiscard]] const std::optional<Status>& status() const { return status_; }
-    /// Events seen since they were last taken.
-    [[nodiscard]] std::deque<Event> takeEvents();
+    /// The next bulk transfer, or nothing when `wait` has passed; the heartbeat is fed meanwhile.
+    Result<std::optional<std::vector<std::uint8_t>>> readBulk(Nanoseconds wait);
 
-    /// Gives the rig back: it goes dark.
+    /// The next STATUS (10 Hz and on change); a Device error when none comes.
+    Result<Status> freshStatus();
+    /// The last one that came by the way.
+    [[nodiscard]] const std::optional<Status>& status() const { return status_; }
+    Result<Stats> stats();
+    /// Events since the last call, oldest first, those lost as reports re-read; the rig keeps 64.
+    Result<std::vector<Event>> takeEvents();
+    [[nodiscard]] const LinkCounters& counters() const { return counters_; }
+
+    /// Gives the rig back: dark, aborted, flushed. No command works afterwards.
     Result<void> release();
 
 private:
-    RigLink(Transport& transport, std::uint64_t sessionId)
-        : transport_(&transport), sessionId_(sessionId) {}
-
+    RigLink(Transport& transport, const LinkOptions& options);
+    Result<void> identify();
     Result<void> claim();
-    [[nodiscard]] Result<std::optional<Ack>> awaitAck(const Command& command, Nanoseconds wait);
-    [[nodiscard]] Result<std::optional<Ack>> readLastAck(const Command& command);
-    [[nodiscard]] std::optional<Ack> sort(const Report& report, const Command* waitingFor);
-    [[nodiscard]] bool answers(const Ack& ack, const Command& command) const;
+    Result<SessionState> setSession(bool release);
+    Result<std::optional<Ack>> sendOnce(const Command& command);
+    Result<std::optional<Ack>> awaitAck(const Command& command, Nanoseconds wait);
+    Result<std::optional<Ack>> storedAck(const Command& command);
+    [[nodiscard]] bool answers(const Ack& ack, const Command& command);
+    Result<std::optional<Ack>> handleInput(const Report& report);
+    Result<void> listen(Nanoseconds wait);
+    void keep(const Event& event);
+    [[nodiscard]] Nanoseconds untilPing() const;
 
     Transport* transport_;
-    std::uint64_t sessionId_;
-    std::uint16_t heartbeatMs_ = 2000;
-    std::uint16_t sequence_ = 0;
-    Nanoseconds lastSent_{0};
+    LinkOptions options_;
+    DeviceStrings strings_;
     Ident ident_;
     Limits limits_;
+    bool claimed_ = false;
+    bool resumed_ = false;
+    std::uint16_t lastCommand_ = 0;
+    Nanoseconds fed_{0};  ///< when the last command was sent
     std::optional<Status> status_;
     std::deque<Event> events_;
+    std::uint32_t lastEvent_ = 0;  ///< event_seq up to which all are taken or kept
+    LinkCounters counters_;
 };
 
 }  // namespace gonio::driver

@@ -1,261 +1,414 @@
 #include "driver/rig.h"
 
 #include <algorithm>
-
-#include "driver/protocol/pixels.h"
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <variant>
 
 namespace gonio::driver {
 namespace {
 
-constexpr int kResends = 2;
-constexpr int kRecaptures = 3;
-constexpr Nanoseconds kPoll = std::chrono::milliseconds(100);
-constexpr Nanoseconds kResendWait = std::chrono::milliseconds(500);
+using namespace std::chrono_literals;
 
-std::uint32_t largestFrame(const Ident& ident) {
-    return 2U * ident.sensorWidth * ident.sensorHeight;
+constexpr int kResends = 2;     // per frame; PROTOCOL.md 3, "Repair"
+constexpr int kRecaptures = 3;  // likewise
+constexpr int kCaptureIds = 8;  // ids tried in a row when frame RAM still holds the first
+constexpr std::uint32_t kCanResend = 1U << 2;  // capability bit
+constexpr std::uint64_t kMaxPlanStep = (std::uint64_t{1} << 48) - 1;
+constexpr std::size_t kReasonsKept = 8;
+
+Error usage(const std::string& what) { return {ErrorKind::Usage, what}; }
+
+std::string plural(int n, const std::string& noun) {
+    return std::to_string(n) + " " + noun + (n == 1 ? "" : "s");
 }
 
-std::optional<double> celsius(std::int16_t hundredths) {
-    if (hundredths == kNoTemperature) return std::nullopt;
-    return hundredths / 100.0;
+std::string describe(const CaptureRequest& request) {
+    const bool dark = request.levels.dark() || !request.led;
+    return "capture step " + std::to_string(request.planStep) + " (" +
+           (dark ? std::string("dark") : "LED " + std::to_string(*request.led)) + ", " +
+           std::to_string(request.exposure.count()) + " us, " + plural(request.frames, "frame") +
+           ")";
 }
+
+bool fits16(int value) { return value >= 0 && value <= std::numeric_limits<std::uint16_t>::max(); }
 
 }  // namespace
 
-Rig::Rig(RigLink link, Assembler assembler)
-    : link_(std::make_unique<RigLink>(std::move(link))), assembler_(std::move(assembler)) {}
+struct Rig::Progress {
+    std::vector<std::optional<Frame>> frames;
+    std::vector<int> asked;      ///< RESENDs of this attempt, by frame
+    std::vector<bool> hopeless;  ///< of this attempt, by frame
+    bool failed = false;         ///< this attempt lost or refused a frame
+    int discarded = 0, resends = 0, recaptures = 0;
+    std::vector<std::string> reasons;
+
+    explicit Progress(int n) : frames(static_cast<std::size_t>(n)) {}
+
+    void begin() {
+        asked.assign(frames.size(), 0);
+        hopeless.assign(frames.size(), false);
+        failed = false;
+    }
+    /// Wanted, and still to be hoped for in this attempt.
+    [[nodiscard]] bool waitsFor(int frame) const {
+        const auto i = static_cast<std::size_t>(frame);
+        return !frames[i] && !hopeless[i];
+    }
+    [[nodiscard]] bool waits() const {
+        for (int i = 0; i < static_cast<int>(frames.size()); ++i) {
+            if (waitsFor(i)) return true;
+        }
+        return false;
+    }
+    /// Frames up to the last one that is missing: those must be armed again.
+    [[nodiscard]] int toArm() const {
+        const auto last = std::find(frames.rbegin(), frames.rend(), std::nullopt);
+        return static_cast<int>(frames.rend() - last);
+    }
+    void giveUp(int frame, const std::string& why) {
+        hopeless[static_cast<std::size_t>(frame)] = true;
+        failed = true;
+        if (reasons.size() < kReasonsKept)
+            reasons.push_back("frame " + std::to_string(frame) + ": " + why);
+    }
+    [[nodiscard]] std::string evidence() const {
+        std::string list;
+        for (const std::string& reason : reasons) list += (list.empty() ? "" : "; ") + reason;
+        return list;
+    }
+};
 
 Result<Rig> Rig::open(Transport& transport, std::uint64_t sessionId) {
-    Result<RigLink> link = RigLink::open(transport, sessionId);
-    if (!link) return link.error();
-    const Ident ident = link->ident();
-    return Rig(std::move(*link),
-               Assembler(ident.bootId, ident.maxChunkPayload, largestFrame(ident)));
+    return open(transport, LinkOptions{.sessionId = sessionId});
 }
 
-Rig::~Rig() {
-    if (link_) (void)close();
+Result<Rig> Rig::open(Transport& transport, const LinkOptions& options) {
+    auto link = RigLink::open(transport, options);
+    if (!link) return link.error();
+    Rig rig(std::move(*link));
+    if (auto started = rig.start(); !started) return started.error();
+    return rig;
 }
+
+/// A claim taken up again finds whatever its last host left behind.
+Result<void> Rig::start() {
+    if (!link_->resumed()) return {};
+    if (auto idle = link_->command(Op::Abort); !idle) return idle.error();
+    return flush();
+}
+
+Rig::~Rig() { (void)close(); }
 
 Result<void> Rig::close() {
     if (!link_) return {};
-    const Result<void> released = link_->release();
-    link_.reset();
-    return released;
+    (void)darken();  // a rig that does not hear this may still hear the release, which darkens too
+    geometry_.reset();
+    return link_->release();
 }
 
 RigInfo Rig::identify() const {
     const Ident& ident = link_->ident();
     const Limits& limits = link_->limits();
-    RigInfo info;
-    info.serial = link_->transport().strings().serial;
-    for (std::size_t i = 0; i < ident.ledCount; ++i) {
-        info.ledAngles.push_back(Radians::fromDegrees(ident.ledAngle[i] / 100.0));
-    }
-    info.sensor = {ident.sensorWidth, ident.sensorHeight};
-    info.bitDepth = ident.bitDepth;
-    info.blackLevel = limits.blackLevel;
-    info.fullScale = limits.fullScale;
-    info.exposureMin = Microseconds(ident.exposureMinUs);
-    info.exposureMax = Microseconds(ident.exposureMaxUs);
-    info.framePeriod = Microseconds(limits.framePeriodUs);
-    info.maxFrames = limits.maxFrames;
+    RigInfo info{.serial = link_->strings().serial,
+                 .ledAngles = {},
+                 .sensor = {ident.sensorWidth, ident.sensorHeight},
+                 .bitDepth = ident.bitDepth,
+                 .blackLevel = limits.blackLevel,
+                 .fullScale = limits.fullScale,
+                 .exposureMin = Microseconds(ident.exposureMinUs),
+                 .exposureMax = Microseconds(ident.exposureMaxUs),
+                 .framePeriod = Microseconds(limits.framePeriodUs),
+                 .maxFrames = limits.maxFrames,
+                 .ident = ident,
+                 .limits = limits};
+    for (std::size_t i = 0; i < ident.ledCount; ++i)
+        info.ledAngles.push_back(Radians::fromDegrees(ident.ledAngle[i] * 0.01));
     return info;
 }
 
 Result<void> Rig::configure(const Window& window, PixelFormat format) {
-    const auto u16 = [](int v) { return static_cast<std::uint16_t>(v); };
-    const auto result =
+    const Size size = window.size;
+    const std::string what = "configure " + std::to_string(size.width) + "x" +
+                             std::to_string(size.height) + " at " + std::to_string(window.x) + "," +
+                             std::to_string(window.y) + ", binning " +
+                             std::to_string(window.binning);
+    const auto wanted = frameBytes(window, format);
+    const bool sendable = fits16(window.x) && fits16(window.y) && fits16(size.width) &&
+                          fits16(size.height) && window.binning <= 255;
+    if (!wanted || !sendable) return usage(what + ": not a window of any sensor");
+    geometry_.reset();
+    const auto granted =
         link_->command(Op::SetFormat,
                        encode(SetFormat{.format = format,
-                                        .x = u16(window.x),
-                                        .y = u16(window.y),
-                                        .width = u16(window.size.width),
-                                        .height = u16(window.size.height),
+                                        .x = static_cast<std::uint16_t>(window.x),
+                                        .y = static_cast<std::uint16_t>(window.y),
+                                        .width = static_cast<std::uint16_t>(size.width),
+                                        .height = static_cast<std::uint16_t>(size.height),
                                         .binning = static_cast<std::uint8_t>(window.binning)}));
-    if (!result) return result.error().in("configure");
-    window_ = window;
-    format_ = format;
+    if (!granted) return granted.error().in(what);
+    const std::uint32_t bytes = decodeU32(*granted);
+    if (bytes != *wanted) {
+        return Error{ErrorKind::Device,
+                     what + ": the rig says " + std::to_string(bytes) +
+                         " bytes per frame, this window has " + std::to_string(*wanted)};
+    }
+    geometry_ = Geometry{.window = window, .format = format, .frameBytes = bytes};
     return {};
 }
 
 Result<void> Rig::darken() {
-    const auto result = link_->command(Op::SetLed, encode(SetLed{}));
-    if (!result) return result.error().in("darken");
+    const auto dark = link_->command(Op::SetLed, encode(SetLed{}));
+    if (!dark) return dark.error().in("darken");
     return {};
 }
 
-Result<Rig::Settings> Rig::apply(const CaptureRequest& request) {
-    Settings settings{.led = request.led, .levels = request.levels, .exposure = {}};
-    if (request.levels.dark()) settings.led.reset();
-    const SetLed led{.led = static_cast<std::uint8_t>(settings.led.value_or(0)),
+Result<void> Rig::check(const CaptureRequest& request) const {
+    const Ident& ident = link_->ident();
+    const Limits& limits = link_->limits();
+    if (!geometry_) return usage("not configured: call configure() first");
+    if (request.planStep > kMaxPlanStep) return usage("plan step needs more than 48 bits");
+    if (request.frames < 1 || request.frames > limits.maxFrames) {
+        return usage(plural(request.frames, "frame") + ", wanted 1.." +
+                     std::to_string(limits.maxFrames));
+    }
+    if (!request.led && !request.levels.dark()) return usage("levels without an LED");
+    if (request.led && (*request.led < 0 || *request.led >= ident.ledCount)) {
+        return usage("LED " + std::to_string(*request.led) + ", the rig has 0.." +
+                     std::to_string(ident.ledCount - 1));
+    }
+    if (request.exposure.count() < ident.exposureMinUs ||
+        request.exposure.count() > ident.exposureMaxUs) {
+        return usage(std::to_string(request.exposure.count()) + " us, the rig exposes for " +
+                     std::to_string(ident.exposureMinUs) + ".." +
+                     std::to_string(ident.exposureMaxUs) + " us");
+    }
+    if (!(request.gainDb >= 0 && request.gainDb <= limits.gainMax * 0.01)) {
+        return usage("gain " + std::to_string(request.gainDb) + " dB, the rig has 0.." +
+                     std::to_string(limits.gainMax * 0.01));
+    }
+    return {};
+}
+
+Result<Capture> Rig::capture(const CaptureRequest& request) {
+    const std::string what = describe(request);
+    if (auto sound = check(request); !sound) return sound.error().in(what);
+    const Anomalies before = anomalies();
+    Progress progress(request.frames);
+    Result<void> done = fill(request, progress);
+    if (done && !request.keepLit) done = darken();
+    if (!done) {
+        makeSafe();
+        const Error& error = done.error();
+        std::string message = what + ": " + error.message + " (" +
+                              plural(progress.resends, "resend") + ", " +
+                              plural(progress.recaptures, "recapture") +
+                              "; anomalies: " + anomalies().since(before).text();
+        if (!progress.reasons.empty()) message += "; " + progress.evidence();
+        return Error{error.kind, message + ")", error.deviceStatus};
+    }
+    Capture capture{.frames = {},
+                    .anomalies = anomalies().since(before),
+                    .discarded = progress.discarded,
+                    .resends = progress.resends,
+                    .recaptures = progress.recaptures};
+    for (auto& frame : progress.frames) capture.frames.push_back(std::move(*frame));
+    return capture;
+}
+
+/// Attempts until every frame is there. Early frames cost no recapture, but a rig whose settings
+/// are still not in effect after control_latency attempts does not do what it says.
+Result<void> Rig::fill(const CaptureRequest& request, Progress& progress) {
+    int early = 0;
+    while (true) {
+        if (auto tried = attempt(request, progress); !tried) return tried;
+        if (progress.toArm() == 0) return {};
+        if (!progress.failed) {
+            if (++early > link_->ident().controlLatency)
+                return Error{ErrorKind::Device, "settings do not take effect"};
+        } else if (progress.recaptures == kRecaptures) {
+            return Error{ErrorKind::Device, "frames are missing or not as planned"};
+        } else {
+            ++progress.recaptures;
+        }
+        if (auto quiet = quiesce(); !quiet) return quiet;
+    }
+}
+
+Result<void> Rig::attempt(const CaptureRequest& request, Progress& progress) {
+    progress.begin();
+    const Result<FramePlan> plan = apply(request);
+    if (!plan) return plan.error();
+    if (auto armed = arm(request.planStep, progress.toArm()); !armed) return armed;
+    return collect(*plan, progress);
+}
+
+Result<FramePlan> Rig::apply(const CaptureRequest& request) {
+    const bool dark = request.levels.dark();
+    const SetLed led{.led = static_cast<std::uint8_t>(dark ? 0 : *request.led),
                      .levels = request.levels.value};
     const auto lit = link_->command(Op::SetLed, encode(led));
-    if (!lit) return lit.error().in("LED " + std::to_string(led.led));
-    const auto exposed = link_->command(
-        Op::SetExposure,
-        encode(SetExposure{.exposureUs = static_cast<std::uint32_t>(request.exposure.count())}));
-    if (!exposed) {
-        return exposed.error().in("exposure " + std::to_string(request.exposure.count()) + " us");
-    }
+    if (!lit) return lit.error();
+    const SetExposure exposure{
+        .exposureUs = static_cast<std::uint32_t>(request.exposure.count()),
+        .gain = static_cast<std::uint16_t>(std::lround(request.gainDb * 100))};
+    const auto exposed = link_->command(Op::SetExposure, encode(exposure));
+    if (!exposed) return exposed.error();
     const Granted granted = decodeGranted(*exposed);
-    settings.exposure = {.requested = request.exposure,
-                         .granted = Nanoseconds(static_cast<std::int64_t>(granted.exposureNs))};
-    settings.effectiveFrame = std::max(decodeU32(*lit), granted.effectiveFrame);
-    return settings;
+    // Deadlines come from it: no quantisation of any sensor is coarser than this.
+    const Nanoseconds most = 2 * Nanoseconds(request.exposure) + Nanoseconds(100ms);
+    if (granted.exposureNs == 0 || granted.exposureNs > static_cast<std::uint64_t>(most.count())) {
+        return Error{ErrorKind::Device,
+                     "SET_EXPOSURE: " + std::to_string(granted.exposureNs) + " ns granted for " +
+                         std::to_string(exposure.exposureUs) + " us"};
+    }
+    // The later of the two, frame numbers wrapping.
+    const std::uint32_t ledFrame = decodeU32(*lit);
+    const bool ledLast = static_cast<std::int32_t>(ledFrame - granted.effectiveFrame) > 0;
+    return FramePlan{
+        .window = geometry_->window,
+        .format = geometry_->format,
+        .led = dark ? std::nullopt : request.led,
+        .levels = request.levels,
+        .exposure = {.requested = request.exposure,
+                     .granted = Nanoseconds(static_cast<std::int64_t>(granted.exposureNs))},
+        .gain = granted.gain,
+        .effectiveFrame = ledLast ? ledFrame : granted.effectiveFrame,
+        .bitDepth = link_->ident().bitDepth};
 }
 
-Result<std::vector<Frame>> Rig::capture(const CaptureRequest& request) {
-    if (request.frames < 1) {
-        return Error{ErrorKind::Usage,
-                     "capture: " + std::to_string(request.frames) + " frames, wanted 1 or more"};
+/// A capture_id that frame RAM still holds is refused with BAD_ARG (a host that came back repeats
+/// its plan step): the next attempt's is free.
+Result<void> Rig::arm(std::uint64_t planStep, int frames) {
+    if (planStep != lastStep_) lastAttempt_ = 0;
+    lastStep_ = planStep;
+    Result<void> armed;
+    for (int tries = 0; tries < kCaptureIds; ++tries) {
+        // From 1, so that no capture_id is 0; 65535 attempts at one step wrap.
+        lastAttempt_ = static_cast<std::uint16_t>(lastAttempt_ == 0xFFFF ? 1 : lastAttempt_ + 1);
+        const ExpectedCapture expected{.bootId = link_->ident().bootId,
+                                       .captureId = planStep << 16 | lastAttempt_,
+                                       .frames = frames,
+                                       .frameBytes = geometry_->frameBytes,
+                                       .maxChunkPayload = link_->ident().maxChunkPayload};
+        if (auto sized = assembler_.expect(expected); !sized) return sized;
+        const auto first = link_->command(Op::Arm,
+                                          encode(Arm{.captureId = expected.captureId,
+                                                     .frames = static_cast<std::uint16_t>(frames),
+                                                     .trigger = 0}));
+        if (first) return {};
+        armed = first.error();
+        if (armed.error().deviceStatus != status::kBadArg) break;
     }
-    std::optional<Error> last;
-    for (int attemptNumber = 0; attemptNumber <= kRecaptures; ++attemptNumber) {
-        if (attemptNumber > 0) ++assembler_.anomalies().recaptures;
-        Result<std::vector<Frame>> frames = attempt(request, attemptNumber);
-        if (frames) return frames;
-        last = frames.error();
-        // A refusal by the rig is final; silence and bad frames are worth another
-        // try.
-        if (last->deviceStatus != 0) break;
-        (void)link_->command(Op::Abort);
-    }
-    const Anomalies& a = anomalies();
-    (void)darken();
-    return Error{ErrorKind::Device,
-                 "capture " + std::to_string(request.planStep) + ": " + last->message +
-                     " (seen: " + std::to_string(a.badChunks) + " bad chunks, " +
-                     std::to_string(a.sequenceGaps) + " lost, " + std::to_string(a.badFrames) +
-                     " bad frames, " + std::to_string(a.resends) + " resends)",
-                 last->deviceStatus};
+    return armed;
 }
 
-Result<std::vector<Frame>> Rig::attempt(const CaptureRequest& request, int attemptNumber) {
-    Result<Settings> settings = apply(request);
-    if (!settings) return settings.error();
-    const std::uint64_t captureId =
-        request.planStep << 16 | static_cast<std::uint64_t>(attemptNumber + 1);
-    assembler_.expect(captureId);
-    // Settings may reach the sensor some frames late: so many more are taken, and
-    // dropped.
-    const int late = link_->ident().controlLatency;
-    const auto first = link_->command(
-        Op::Arm,
-        encode(Arm{.captureId = captureId, .frames = static_cast<std::uint16_t>(request.frames)}));
-    if (!first) return first.error().in("arm");
-    const std::uint32_t firstFrame = decodeU32(*first);
-    if (settings->effectiveFrame > firstFrame + static_cast<std::uint32_t>(late)) {
-        return Error{ErrorKind::Device, "settings take effect too late"};
-    }
-    const Nanoseconds patience = settings->exposure.granted +
-                                 2 * Nanoseconds(Microseconds(link_->limits().framePeriodUs)) +
-                                 std::chrono::milliseconds(500 + link_->ident().ledSettleMs);
-    std::vector<Frame> frames;
-    for (int index = 0; index < request.frames; ++index) {
-        Result<std::optional<RawFrame>> raw = awaitFrame(index, captureId, patience);
-        if (!raw) return raw.error();
-        if (!*raw)
-            return Error{ErrorKind::Device, "frame " + std::to_string(index) + " is overdue"};
-        if (auto why = objection(**raw, *settings)) {
-            return Error{ErrorKind::Device, "frame " + std::to_string(index) + ": " + *why};
-        }
-        frames.push_back(toFrame(std::move(**raw), captureId));
-    }
-    return frames;
+/// PROTOCOL.md 2: a frame is overdue after settling, exposure, two frame periods and 500 ms. Every
+/// new chunk starts the wait anew; there are finitely many of them.
+Nanoseconds Rig::patience(const Exposure& exposure) const {
+    return exposure.granted + 2 * Nanoseconds(Microseconds(link_->limits().framePeriodUs)) +
+           Nanoseconds(std::chrono::milliseconds(link_->ident().ledSettleMs)) + 500ms;
 }
 
-Result<std::optional<RawFrame>> Rig::awaitFrame(int index,
-                                                std::uint64_t captureId,
-                                                Nanoseconds patience) {
-    const Clock& clock = link_->transport().clock();
-    Nanoseconds deadline = clock.now() + patience;
-    int resends = 0;
-    while (true) {
-        if (Result<void> alive = link_->keepAlive(); !alive) return alive.error();
-        auto transfer =
-            link_->transport().readBulk(std::clamp(deadline - clock.now(), Nanoseconds(0), kPoll));
+Result<void> Rig::collect(const FramePlan& plan, Progress& progress) {
+    const Nanoseconds wait = patience(plan.exposure);
+    Nanoseconds deadline = link_->clock().now() + wait;
+    while (progress.waits()) {
+        const Nanoseconds left = std::max(Nanoseconds{0}, deadline - link_->clock().now());
+        const auto transfer = link_->readBulk(left);
         if (!transfer) return transfer.error();
-        if (*transfer) {
-            auto frame = assembler_.add(**transfer);
-            if (frame && frame->index == index) return frame;
-            if (assembler_.aborted()) {
-                const std::uint16_t reason = assembler_.aborted()->reason;
-                return Error{ErrorKind::Device,
-                             "the rig aborted the exposure: " + statusName(reason),
-                             reason};
-            }
-            if (!frame) continue;
-            // A later frame is complete: this one has lost chunks. (It is taken again
-            // as a whole.)
+        if (*transfer && assembler_.feed(**transfer)) deadline = link_->clock().now() + wait;
+        while (const auto wire = assembler_.take()) accept(*wire, plan, progress);
+        if (const auto& aborted = assembler_.aborted()) {
+            return Error{ErrorKind::Device,
+                         "the rig aborted frame number " + std::to_string(aborted->frameNumber) +
+                             ": " + statusName(aborted->reason),
+                         aborted->reason};
         }
-        const bool late = clock.now() >= deadline || *transfer;
-        if (!late) continue;
-        const auto missing = assembler_.missing(index);
-        if (resends == kResends) return std::optional<RawFrame>();
-        ++resends;
-        ++assembler_.anomalies().resends;
-        const Resend resend{.captureId = captureId,
-                            .frame = static_cast<std::uint16_t>(index),
-                            .firstChunk = missing ? missing->first : std::uint16_t{0},
-                            .lastChunk = missing ? missing->last : std::uint16_t{0xFFFF}};
-        const auto asked = link_->command(Op::Resend, encode(resend));
-        if (!asked && asked.error().deviceStatus == status::kFrameGone)
-            return std::optional<RawFrame>();
-        if (!asked) return asked.error();
-        deadline = clock.now() + kResendWait;
+        std::vector<MissingChunks> again = assembler_.lost();
+        if (link_->clock().now() >= deadline) {
+            again.clear();
+            for (int i = 0; i < static_cast<int>(progress.frames.size()); ++i) {
+                if (const auto chunks = assembler_.missing(i)) again.push_back(*chunks);
+            }
+            deadline = link_->clock().now() + wait;
+        }
+        for (const MissingChunks& chunks : again) {
+            if (!progress.waitsFor(chunks.frame)) continue;
+            if (auto asked = askAgain(chunks, progress); !asked) return asked;
+        }
+    }
+    return {};
+}
+
+void Rig::accept(const WireFrame& wire, const FramePlan& plan, Progress& progress) {
+    if (!progress.waitsFor(wire.index)) return;
+    auto verdict = judge(wire, plan);
+    if (auto* frame = std::get_if<Frame>(&verdict)) {
+        progress.frames[static_cast<std::size_t>(wire.index)] = std::move(*frame);
+    } else if (const auto* rejected = std::get_if<Rejected>(&verdict)) {
+        progress.giveUp(wire.index, rejected->why);
+    } else {
+        progress.hopeless[static_cast<std::size_t>(wire.index)] = true;
+        ++progress.discarded;
     }
 }
 
-std::optional<std::string> Rig::objection(const RawFrame& raw, const Settings& settings) const {
-    const Leader& l = raw.leader;
-    const Size sent = window_.sent();
-    if (l.width != sent.width || l.height != sent.height || l.x != window_.x || l.y != window_.y ||
-        l.binning != window_.binning || l.format != format_ ||
-        l.stride != strideOf(format_, sent.width)) {
-        return "another window or format than configured";
+Result<void> Rig::askAgain(const MissingChunks& chunks, Progress& progress) {
+    int& asked = progress.asked[static_cast<std::size_t>(chunks.frame)];
+    const std::string range =
+        "chunks " + std::to_string(chunks.first) + ".." + std::to_string(chunks.last) + " missing";
+    if ((link_->ident().capabilities & kCanResend) == 0) {
+        progress.giveUp(chunks.frame, range + ", the rig cannot resend");
+        return {};
     }
-    if (l.frameNumber < settings.effectiveFrame) return "taken before the settings took effect";
-    const std::uint8_t led = settings.led ? static_cast<std::uint8_t>(*settings.led) : kDarkLed;
-    if (l.led != led || l.ledLevel != settings.levels.value)
-        return "another LED or level than planned";
-    if (static_cast<std::int64_t>(l.exposureGrantedNs) != settings.exposure.granted.count()) {
-        return "another exposure than granted";
+    if (asked == kResends) {
+        progress.giveUp(chunks.frame, range + " after " + plural(asked, "RESEND"));
+        return {};
     }
-    // Dark frames may be taken with the interlock open.
-    const std::uint16_t wanted =
-        settings.led ? validity::kAll : validity::kCurrent | validity::kTemperature;
-    if ((raw.trailer.validity & wanted) != wanted) {
-        return "not valid (bits " + std::to_string(raw.trailer.validity) +
-               ": 1 interlock, 2 current, 4 temperature)";
+    ++asked;
+    ++progress.resends;
+    const auto sent =
+        link_->command(Op::Resend,
+                       encode(Resend{.captureId = lastStep_ << 16 | lastAttempt_,
+                                     .frame = static_cast<std::uint16_t>(chunks.frame),
+                                     .firstChunk = chunks.first,
+                                     .lastChunk = chunks.last}));
+    if (sent) {
+        assembler_.askedFor(chunks);
+        return {};
     }
-    return std::nullopt;
+    const int code = sent.error().deviceStatus;
+    if (code != status::kFrameGone && code != status::kBadRange) return sent.error();
+    progress.giveUp(chunks.frame, range + ", " + statusName(static_cast<std::uint16_t>(code)));
+    return {};
 }
 
-Frame Rig::toFrame(RawFrame raw, std::uint64_t captureId) const {
-    const Leader& l = raw.leader;
-    Frame frame;
-    frame.pixels = unpackPixels(raw.pixels, {l.width, l.height}, l.format);
-    frame.captureId = captureId;
-    frame.index = raw.index;
-    frame.number = l.frameNumber;
-    if (l.led != kDarkLed) frame.led = l.led;
-    frame.levels.value = l.ledLevel;
-    frame.exposure = {.requested = Microseconds(l.exposureRequestedUs),
-                      .granted = Nanoseconds(static_cast<std::int64_t>(l.exposureGrantedNs))};
-    frame.gainDb = l.gain / 100.0;
-    frame.window = window_;
-    frame.bitDepth = l.bitDepth;
-    frame.blackLevel = l.blackLevel;
-    for (std::size_t i = 0; i < 4; ++i) frame.celsius[i] = celsius(l.temperature[i]);
-    for (std::size_t c = 0; c < 3; ++c) {
-        frame.currentMinMilliamp[c] = raw.trailer.currentMin[c] / 10.0;
-        frame.currentMaxMilliamp[c] = raw.trailer.currentMax[c] / 10.0;
+/// Idle, with nothing of the last attempt on its way.
+Result<void> Rig::quiesce() {
+    const Result<Status> now = link_->freshStatus();
+    if (!now) return now.error();
+    if (now->state == RigState::Fault) {
+        return Error{
+            ErrorKind::Device, "the rig is in fault: " + statusName(now->fault), now->fault};
     }
-    frame.saturatedPixels = raw.trailer.saturatedPixels;
-    frame.start = Microseconds(static_cast<std::int64_t>(l.exposureStartUs));
-    return frame;
+    if (now->state != RigState::Idle) {
+        if (auto idle = link_->command(Op::Abort); !idle) return idle.error();
+    }
+    return flush();
+}
+
+Result<void> Rig::flush() {
+    const auto next = link_->command(Op::Flush);
+    if (!next) return next.error();
+    assembler_.flushed(decodeU32(*next));
+    return {};
+}
+
+/// ABORT is dark at once. What cannot be reached any more goes dark by its own heartbeat.
+void Rig::makeSafe() {
+    if (link_->command(Op::Abort)) (void)flush();
 }
 
 }  // namespace gonio::driver

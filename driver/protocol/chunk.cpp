@@ -67,21 +67,23 @@ void restamp(std::vector<std::uint8_t>& chunk, std::uint32_t streamSequence, boo
     sealHeader(head);
 }
 
-Result<Chunk> decodeChunk(std::span<const std::uint8_t> transfer) {
-    if (transfer.size() < kChunkHeaderBytes) {
-        return chunkError(std::to_string(transfer.size()) + " bytes, wanted a header of 64");
-    }
+CheckedChunk checkChunk(std::span<const std::uint8_t> transfer) {
+    CheckedChunk seen;
+    const auto found = [&seen](ChunkFault fault) {
+        seen.fault = fault;
+        return seen;
+    };
+    if (transfer.empty()) return found(ChunkFault::Empty);
+    if (transfer.size() < kChunkHeaderBytes) return found(ChunkFault::Short);
     if (!std::equal(kMagic.begin(), kMagic.end(), transfer.begin()))
-        return chunkError("no GNF1 magic");
+        return found(ChunkFault::Magic);
     if (get<std::uint32_t>(transfer, kHeaderCrcOffset) !=
         crc32c(transfer.first(kHeaderCrcOffset))) {
-        return chunkError("header CRC does not agree");
+        return found(ChunkFault::HeaderCrc);
     }
-    if (transfer[4] != kVersion)
-        return chunkError("version " + std::to_string(transfer[4]) + ", wanted 1");
-    const std::size_t headerLength = get<std::uint16_t>(transfer, 6);
-    Chunk chunk;
-    ChunkHeader& header = chunk.header;
+    if (transfer[4] != kVersion) return found(ChunkFault::Version);
+    seen.headerBytes = get<std::uint16_t>(transfer, 6);
+    ChunkHeader& header = seen.chunk.header;
     header.type = static_cast<ChunkType>(transfer[5]);
     header.bootId = get<std::uint32_t>(transfer, 8);
     header.streamSequence = get<std::uint32_t>(transfer, 12);
@@ -93,15 +95,35 @@ Result<Chunk> decodeChunk(std::span<const std::uint8_t> transfer) {
     header.offset = get<std::uint32_t>(transfer, 32);
     header.length = get<std::uint32_t>(transfer, 36);
     header.timeUs = get<std::uint64_t>(transfer, 40);
-    if (headerLength < kChunkHeaderBytes || headerLength > transfer.size() ||
-        transfer.size() - headerLength != header.length) {
-        return chunkError(std::to_string(transfer.size()) + " bytes came, the header promised " +
-                          std::to_string(headerLength) + " + " + std::to_string(header.length));
+    if (seen.headerBytes < kChunkHeaderBytes || seen.headerBytes > transfer.size() ||
+        transfer.size() - seen.headerBytes != header.length) {
+        return found(ChunkFault::Length);
     }
-    chunk.payload = transfer.subspan(headerLength);
-    const std::uint32_t crc = chunk.payload.empty() ? 0U : crc32c(chunk.payload);
-    if (get<std::uint32_t>(transfer, 48) != crc) return chunkError("payload CRC does not agree");
-    return chunk;
+    const auto payload = transfer.subspan(seen.headerBytes);
+    const std::uint32_t crc = payload.empty() ? 0U : crc32c(payload);
+    if (get<std::uint32_t>(transfer, 48) != crc) return found(ChunkFault::PayloadCrc);
+    seen.chunk.payload = payload;
+    return seen;
+}
+
+Result<Chunk> decodeChunk(std::span<const std::uint8_t> transfer) {
+    const CheckedChunk seen = checkChunk(transfer);
+    const std::string bytes = std::to_string(transfer.size()) + " bytes";
+    switch (seen.fault) {
+        case ChunkFault::None: return seen.chunk;
+        case ChunkFault::Empty:
+        case ChunkFault::Short: return chunkError(bytes + ", wanted a header of 64");
+        case ChunkFault::Magic: return chunkError("no GNF1 magic");
+        case ChunkFault::HeaderCrc: return chunkError("header CRC does not agree");
+        case ChunkFault::Version:
+            return chunkError("version " + std::to_string(transfer[4]) + ", wanted 1");
+        case ChunkFault::Length:
+            return chunkError(bytes + " came, the header promised " +
+                              std::to_string(seen.headerBytes) + " + " +
+                              std::to_string(seen.chunk.header.length));
+        case ChunkFault::PayloadCrc: return chunkError("payload CRC does not agree");
+    }
+    return chunkError("unknown fault");
 }
 
 std::vector<std::uint8_t> encode(const Leader& v) {

@@ -45,6 +45,26 @@ struct Chunk {
     std::span<const std::uint8_t> payload;  ///< borrowed from the transfer
 };
 
+/// What is wrong with a transfer as a chunk.
+enum class ChunkFault : std::uint8_t {
+    None,
+    Empty,       ///< a zero-length packet on its own
+    Short,       ///< no room for a header
+    Magic,       ///< not a chunk
+    HeaderCrc,   ///< nothing in the header can be believed
+    Version,     ///< of the header
+    Length,      ///< more or fewer bytes than the header promised
+    PayloadCrc,  ///< the header is sound, its payload is not
+};
+
+/// A transfer as far as it can be believed: the header after None, Length and PayloadCrc, the
+/// payload after None only.
+struct CheckedChunk {
+    ChunkFault fault = ChunkFault::None;
+    std::size_t headerBytes = 0;  ///< header_len
+    Chunk chunk;
+};
+
 struct Leader {
     std::uint16_t width = 0, height = 0;  ///< as sent, after binning
     std::uint32_t stride = 0;
@@ -88,7 +108,8 @@ struct Aborted {
 /// Gives an encoded chunk a new place in the stream, as the device does when it sends or resends
 /// it.
 void restamp(std::vector<std::uint8_t>& chunk, std::uint32_t streamSequence, bool resent);
-/// Device errors: "chunk: ..." with what was wrong.
+[[nodiscard]] CheckedChunk checkChunk(std::span<const std::uint8_t> transfer);
+/// As checkChunk; device errors: "chunk: ..." with what was wrong.
 [[nodiscard]] Result<Chunk> decodeChunk(std::span<const std::uint8_t> transfer);
 
 [[nodiscard]] std::vector<std::uint8_t> encode(const Leader& v);

@@ -28,4 +28,22 @@ std::string statusName(std::uint16_t code) {
     }
 }
 
+std::string opName(Op op) {
+    switch (op) {
+        case Op::Ping: return "PING";
+        case Op::SetLed: return "SET_LED";
+        case Op::SetExposure: return "SET_EXPOSURE";
+        case Op::SetFormat: return "SET_FORMAT";
+        case Op::Arm: return "ARM";
+        case Op::Trigger: return "TRIGGER";
+        case Op::Abort: return "ABORT";
+        case Op::Resend: return "RESEND";
+        case Op::Flush: return "FLUSH";
+        case Op::SyncTime: return "SYNC_TIME";
+        case Op::ClearFault: return "CLEAR_FAULT";
+        case Op::Reboot: return "REBOOT";
+    }
+    return "op " + std::to_string(static_cast<int>(op));
+}
+
 }  // namespace gonio::driver

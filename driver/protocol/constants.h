@@ -71,6 +71,8 @@ inline constexpr std::uint16_t kInternal = 900;
 
 /// "BAD_ARG", ...; "status N" where the number is unknown.
 [[nodiscard]] std::string statusName(std::uint16_t status);
+/// "SET_LED", ...; "op N" where the number is unknown.
+[[nodiscard]] std::string opName(Op op);
 
 namespace event {
 inline constexpr std::uint16_t kBoot = 1, kInterlockOpened = 2, kInterlockClosed = 3, kOverTemp = 4,

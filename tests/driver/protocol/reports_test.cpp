@@ -197,5 +197,10 @@ TEST(Reports, StatusesHaveTheNamesOfThePage) {
     EXPECT_EQ(statusName(12345), "status 12345");
 }
 
+TEST(Reports, OperationsHaveTheNamesOfThePage) {
+    EXPECT_EQ(opName(Op::SetExposure), "SET_EXPOSURE");
+    EXPECT_EQ(opName(static_cast<Op>(77)), "op 77");
+}
+
 }  // namespace
 }  // namespace gonio::driver
