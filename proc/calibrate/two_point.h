@@ -1,0 +1,44 @@
+#pragma once
+// Two-reference calibration (radiometry.md 2.3). With S, S_w, S_b the binned signals of sample,
+// white and black, and f_w, f_b what the certificates say:
+//     f = f_b + (f_w - f_b) q,   q = (S - S_b) / (S_w - S_b).
+// Uncertainties are first order. Random: the noise of the three signals. Systematic: white, common
+// and per direction, by q f_w; black by (1 - q) f_b; the lens map's angle by the local slope of f.
+//
+// A cell that is missing in any of the three is missing here, with the flags of all. Where white is
+// not brighter than black by 5 sigma the cell is missing: nothing can be said there. Negative f
+// survives; |f| < 2 u_random is flagged BelowNoise.
+
+#include <functional>
+
+#include "proc/calibrate/budget.h"
+#include "proc/calibrate/cell_samples.h"
+#include "proc/calibrate/reference.h"
+#include "proc/optics/binning.h"
+
+namespace gonio::proc {
+
+/// What one state's signal is held against.
+struct References {
+    const CellSignal& whiteSignal;
+    const CellSignal& blackSignal;
+    const ReferenceTable& white;
+    const ReferenceTable& black;
+};
+
+/// Standard uncertainty of the direction of a cell, per axis.
+using AngleUncertainty = std::function<Radians(const Direction&)>;
+
+struct Calibrated {
+    CellSamples samples;
+    Budget budget;
+};
+
+/// All signals run over CellGrid. `wi` has phi = 0.
+[[nodiscard]] Calibrated calibrate(const CellSignal& sample,
+                                   const References& references,
+                                   const Direction& wi,
+                                   Band band,
+                                   const AngleUncertainty& uAngle);
+
+}  // namespace gonio::proc

@@ -1,0 +1,182 @@
+#include "proc/optics/binning.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "proc/core/parallel.h"
+
+namespace gonio::proc {
+namespace {
+
+constexpr int kPoints = 4;  // per side of a sensor pixel
+constexpr double kSeenWhole = 0.95;
+constexpr double kMostSaturated = 0.02;
+constexpr std::uint32_t kNoCell = std::numeric_limits<std::uint32_t>::max();
+
+struct CellShare {
+    std::uint32_t cell = kNoCell;
+    std::uint32_t pixel = 0;
+    float area = 0;
+};
+
+/// The cells that lie under pixels of one picture.
+class PixelCells {
+public:
+    PixelCells(const LensMap& map, const Window& window) : map_(map), window_(window) {}
+
+    /// Of a point in pixels of the window.
+    [[nodiscard]] std::uint32_t cellAt(double x, double y) const {
+        const auto wo = map_.directionAt(sensor(x, y));
+        const auto cell = wo ? CellGrid::cellAt(*wo) : std::nullopt;
+        return cell ? static_cast<std::uint32_t>(*cell) : kNoCell;
+    }
+    [[nodiscard]] SensorPoint sensor(double x, double y) const {
+        return {window_.x + x * window_.binning, window_.y + y * window_.binning};
+    }
+    /// Adds what pixel (x, y) gives to each cell that it touches.
+    void split(int x, int y, std::uint32_t pixel, std::vector<CellShare>& out) const {
+        const std::size_t first = out.size();
+        const int points = kPoints * window_.binning;
+        for (int j = 0; j < points; ++j) {
+            for (int i = 0; i < points; ++i) {
+                const std::uint32_t cell = cellAt(x + (i + 0.5) / points, y + (j + 0.5) / points);
+                if (cell == kNoCell) continue;
+                auto known = std::find_if(out.begin() + static_cast<std::ptrdiff_t>(first),
+                                          out.end(),
+                                          [&](const CellShare& s) { return s.cell == cell; });
+                if (known == out.end()) known = out.insert(known, {cell, pixel, 0});
+                known->area += 1.0F / static_cast<float>(points * points);
+            }
+        }
+    }
+
+private:
+    const LensMap& map_;
+    const Window& window_;
+};
+
+}  // namespace
+
+CellSignal CellSignal::missing(std::size_t cells) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    return {std::vector(cells, nan),
+            std::vector(cells, nan),
+            std::vector(cells, 0.0),
+            std::vector(cells, Flags{})};
+}
+
+Binning::Binning(const LensMap& map, const Window& window, Radians field) : window_(window) {
+    // A row that ends at the field, to rounding, is inside.
+    visibleRows_ = std::min(CellGrid::kRows, static_cast<int>(field.degrees() + 1e-9));
+    const Size size = window.sent();
+    const PixelCells under(map, window);
+    perCosine_.resize(size.pixels());
+    solidAngle_.resize(size.pixels());
+    std::vector<std::vector<CellShare>> rows(static_cast<std::size_t>(size.height));
+    const double area = window.binning * window.binning;
+    parallelFor(rows.size(), [&](IndexRange range) {
+        const auto corners = [&](std::size_t y) {
+            std::vector<std::uint32_t> cells;
+            for (int x = 0; x <= size.width; ++x) {
+                cells.push_back(under.cellAt(x, static_cast<double>(y)));
+            }
+            return cells;
+        };
+        std::vector<std::uint32_t> above = corners(range.begin);
+        for (std::size_t y = range.begin; y < range.end; ++y) {
+            const std::vector<std::uint32_t> below = corners(y + 1);
+            for (int x = 0; x < size.width; ++x) {
+                const auto i = static_cast<std::size_t>(x);
+                const std::size_t pixel = y * static_cast<std::size_t>(size.width) + i;
+                const SensorPoint middle = under.sensor(x + 0.5, static_cast<double>(y) + 0.5);
+                const auto wo = map.directionAt(middle);
+                if (!wo || !wo->aboveHorizon()) continue;
+                perCosine_[pixel] = static_cast<float>(1 / wo->z());
+                solidAngle_[pixel] = static_cast<float>(area * map.solidAnglePerPixel(middle));
+                const auto id = static_cast<std::uint32_t>(pixel);
+                const std::uint32_t cell = above[i];
+                if (cell != kNoCell && cell == above[i + 1] && cell == below[i] &&
+                    cell == below[i + 1]) {
+                    rows[y].push_back({cell, id, 1});
+                } else {
+                    under.split(x, static_cast<int>(y), id, rows[y]);
+                }
+            }
+            above = below;
+        }
+    });
+    // Counting sort by cell; within a cell, pixels stay in order.
+    firstShare_.assign(CellGrid::count() + 1, 0);
+    for (const auto& row : rows) {
+        for (const CellShare& share : row) ++firstShare_[share.cell + 1];
+    }
+    for (std::size_t c = 1; c < firstShare_.size(); ++c) firstShare_[c] += firstShare_[c - 1];
+    shares_.resize(firstShare_.back());
+    std::vector<std::size_t> next(firstShare_.begin(), firstShare_.end() - 1);
+    for (const auto& row : rows) {
+        for (const CellShare& share : row) shares_[next[share.cell]++] = {share.pixel, share.area};
+    }
+}
+
+std::span<const Binning::Share> Binning::sharesOf(std::size_t cell) const {
+    return std::span(shares_).subspan(firstShare_[cell], firstShare_[cell + 1] - firstShare_[cell]);
+}
+
+double Binning::pixelsIn(std::size_t cell) const {
+    double sum = 0;
+    for (const Share& share : sharesOf(cell)) sum += share.area;
+    return sum;
+}
+
+CellSignal Binning::bin(const MergedState& state) const {
+    assert(state.radiance.size() == window_.sent());
+    CellSignal out = CellSignal::missing(CellGrid::count());
+    parallelFor(CellGrid::count(), [&](IndexRange cells) {
+        for (std::size_t cell = cells.begin; cell < cells.end; ++cell) bin(state, cell, out);
+    });
+    return out;
+}
+
+void Binning::bin(const MergedState& state, std::size_t cell, CellSignal& out) const {
+    if (CellGrid::place(cell).row >= visibleRows_) {
+        out.flags[cell].set(Flag::Blocked);
+        return;
+    }
+    const std::span<const float> radiance = state.radiance.pixels();
+    const std::span<const float> noise = state.variance.pixels();
+    double signal = 0;
+    double variance = 0;
+    double used = 0;       // steradian
+    double saturated = 0;  // steradian
+    double weights = 0;
+    double squares = 0;
+    for (const Share& share : sharesOf(cell)) {
+        const double omega = double{share.area} * solidAngle_[share.pixel];
+        if (!std::isfinite(radiance[share.pixel])) {
+            saturated += omega;
+            continue;
+        }
+        const double weight = double{share.area} * perCosine_[share.pixel];
+        signal += weight * radiance[share.pixel];
+        variance += weight * weight * noise[share.pixel];
+        used += omega;
+        weights += weight;
+        squares += weight * weight;
+    }
+    if (saturated > kMostSaturated * (used + saturated)) {
+        out.flags[cell].set(Flag::Saturated);
+        return;
+    }
+    if (used + saturated < kSeenWhole * CellGrid::solidAngle(cell)) {
+        out.flags[cell].set(Flag::Blocked);
+        return;
+    }
+    out.signal[cell] = signal / used;
+    out.variance[cell] = variance / (used * used);
+    out.nEff[cell] = weights * weights / squares;
+    out.flags[cell].set(Flag::Measured);
+}
+
+}  // namespace gonio::proc

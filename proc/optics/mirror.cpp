@@ -1,0 +1,27 @@
+#include "proc/optics/mirror.h"
+
+#include <array>
+
+namespace gonio::proc {
+
+std::span<const Wedge> mirrorWedges() {
+    static constexpr std::array<Wedge, 5> kWedges{{
+        {0_deg, 0_deg},
+        {7_deg, 0_deg},
+        {-7_deg, 0_deg},
+        {0_deg, 7_deg},
+        {0_deg, -7_deg},
+    }};
+    return kWedges;
+}
+
+Direction mirroredBy(const Wedge& wedge, const Direction& light) {
+    // Ry Rx z, written out.
+    const Eigen::Vector3d normal(sin(wedge.aboutY) * cos(wedge.aboutX),
+                                 -sin(wedge.aboutX),
+                                 cos(wedge.aboutY) * cos(wedge.aboutX));
+    const Eigen::Vector3d& wi = light.vector();
+    return *Direction::fromVector(2 * normal.dot(wi) * normal - wi);
+}
+
+}  // namespace gonio::proc

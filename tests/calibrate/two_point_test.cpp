@@ -1,0 +1,176 @@
+#include "proc/calibrate/two_point.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace gonio::proc {
+namespace {
+
+constexpr double kGain = 3e6;   // electrons per second per f
+constexpr double kStray = 900;  // electrons per second
+
+const Direction kLight = Direction::fromSpherical(40_deg, 0_deg);
+
+/// S = g f + s in all rows below 75, with this relative noise.
+template <class F>
+CellSignal signalOf(const F& f, double relativeNoise = 1e-3) {
+    CellSignal signal = CellSignal::missing(CellGrid::count());
+    for (std::size_t cell = 0; cell < signal.size(); ++cell) {
+        if (CellGrid::place(cell).row >= 75) {
+            signal.flags[cell].set(Flag::Blocked);
+            continue;
+        }
+        signal.signal[cell] = kGain * f(CellGrid::centre(cell)) + kStray;
+        signal.variance[cell] = std::pow(relativeNoise * signal.signal[cell], 2);
+        signal.nEff[cell] = 40;
+        signal.flags[cell].set(Flag::Measured);
+    }
+    return signal;
+}
+
+/// White and black as their certificates say, seen by the same rig.
+struct Tiles {
+    ReferenceTable white = ReferenceTable::lambertian("white", 0.98, 0.005);
+    ReferenceTable black = ReferenceTable::lambertian("black", 0.001, 0.1);
+    CellSignal whiteSignal = signalOf([](const Direction&) { return 0.98 / kPi; });
+    CellSignal blackSignal = signalOf([](const Direction&) { return 0.001 / kPi; });
+
+    [[nodiscard]] Calibrated operator()(const CellSignal& sample, Radians uAngle = 0_deg) const {
+        return calibrate(sample,
+                         {whiteSignal, blackSignal, white, black},
+                         kLight,
+                         Band::G,
+                         [=](const Direction&) { return uAngle; });
+    }
+};
+
+double slanted(const Direction& wo) { return 0.1 + 0.05 * wo.x(); }
+
+TEST(TwoPoint, TakesGainAndStrayLightOut) {
+    const Tiles tiles;
+    const Calibrated out = tiles(signalOf(slanted));
+    for (std::size_t cell = 0; cell < CellGrid::count(); ++cell) {
+        if (CellGrid::place(cell).row >= 75) {
+            ASSERT_FALSE(out.samples.present(cell));
+            ASSERT_TRUE(out.samples.flags[cell].has(Flag::Blocked));
+            ASSERT_TRUE(std::isnan(out.samples.f[cell]));
+            continue;
+        }
+        ASSERT_TRUE(out.samples.present(cell));
+        ASSERT_NEAR(out.samples.f[cell], slanted(CellGrid::centre(cell)), 1e-12);
+        ASSERT_EQ(out.samples.nEff[cell], 40);
+    }
+}
+
+TEST(TwoPoint, RandomUncertaintyIsThatOfRepeats) {
+    std::mt19937 random(3);
+    std::normal_distribution<double> noise;
+    const Tiles clean;
+    const CellSignal sample = signalOf(slanted, 0.01);
+    Tiles tiles = clean;
+    CellSignal noisy = sample;
+    for (std::size_t cell = 0; cell < CellGrid::count(); ++cell) {
+        const auto disturb = [&](CellSignal& s) {
+            s.signal[cell] += noise(random) * std::sqrt(s.variance[cell]);
+        };
+        disturb(noisy);
+        disturb(tiles.whiteSignal);
+        disturb(tiles.blackSignal);
+    }
+    const Calibrated out = tiles(noisy);
+    double sum = 0;
+    double count = 0;
+    for (std::size_t cell = 0; cell < CellGrid::count(); ++cell) {
+        if (!out.samples.present(cell)) continue;
+        const double error = out.samples.f[cell] - slanted(CellGrid::centre(cell));
+        sum += std::pow(error / out.samples.uRandom[cell], 2);
+        ++count;
+    }
+    EXPECT_NEAR(sum / count, 1, 0.05);
+}
+
+TEST(TwoPoint, SystematicUncertaintyIsWhatATileThatLiesDoes) {
+    // White brighter by one sigma than its certificate: f comes out lower by what u_systematic
+    // says.
+    const auto shifted = [](double whiteFactor, double blackFactor) {
+        Tiles tiles;
+        tiles.whiteSignal = signalOf([=](const Direction&) { return 0.98 / kPi * whiteFactor; });
+        tiles.blackSignal = signalOf([=](const Direction&) { return 0.001 / kPi * blackFactor; });
+        return tiles(signalOf(slanted)).samples;
+    };
+    const CellSamples right = shifted(1, 1);
+    const CellSamples white = shifted(1.005, 1);
+    const CellSamples black = shifted(1, 1.1);
+    for (const double theta : {5.5, 40.5, 70.5}) {
+        const std::size_t cell =
+            *CellGrid::cellAt(Direction::fromSpherical(Radians::fromDegrees(theta), 30_deg));
+        const double both =
+            std::hypot(white.f[cell] - right.f[cell], black.f[cell] - right.f[cell]);
+        EXPECT_NEAR(both / right.uSystematic[cell], 1, 0.02) << theta;
+    }
+}
+
+TEST(TwoPoint, GeometryIsSlopeTimesAngle) {
+    const Tiles tiles;
+    const Radians u = 0.5_deg;
+    const Calibrated out = tiles(signalOf(slanted), u);
+    const Calibrated ideal = tiles(signalOf(slanted));
+    const std::size_t cell = *CellGrid::cellAt(Direction::fromSpherical(30.5_deg, 0.7_deg));
+    const double added = std::sqrt(std::pow(out.samples.uSystematic[cell], 2) -
+                                   std::pow(ideal.samples.uSystematic[cell], 2));
+    // d(0.05 x)/dtheta = 0.05 cos(theta).
+    EXPECT_NEAR(added, 0.05 * cos(30.5_deg) * u.value(), 1e-5);
+}
+
+TEST(TwoPoint, NegativeValuesSurviveAndAreBelowNoise) {
+    const Tiles tiles;
+    const Calibrated out = tiles(signalOf([](const Direction&) { return -0.0001; }, 1));
+    const std::size_t cell = *CellGrid::cellAt(Direction::fromSpherical(30.5_deg, 10_deg));
+    EXPECT_NEAR(out.samples.f[cell], -0.0001, 1e-12);
+    EXPECT_TRUE(out.samples.flags[cell].has(Flag::BelowNoise));
+    EXPECT_TRUE(out.samples.present(cell));
+}
+
+TEST(TwoPoint, WithoutContrastNothingIsSaid) {
+    Tiles tiles;
+    tiles.whiteSignal = tiles.blackSignal;
+    const Calibrated out = tiles(signalOf(slanted));
+    for (std::size_t cell = 0; cell < CellGrid::count(); ++cell) {
+        ASSERT_FALSE(out.samples.present(cell));
+        ASSERT_TRUE(std::isnan(out.samples.f[cell]));
+    }
+}
+
+TEST(TwoPoint, AMissingReferenceCellIsMissing) {
+    Tiles tiles;
+    const std::size_t cell = 5000;
+    tiles.whiteSignal.flags[cell] = {Flag::Saturated};
+    const Calibrated out = tiles(signalOf(slanted));
+    EXPECT_FALSE(out.samples.present(cell));
+    EXPECT_TRUE(out.samples.flags[cell].has(Flag::Saturated));
+    EXPECT_TRUE(out.samples.present(cell + 1));
+    EXPECT_TRUE(std::isfinite(out.samples.uSystematic[cell + 1]));
+}
+
+TEST(TwoPoint, BudgetNamesEveryComponent) {
+    const Tiles tiles;
+    const Budget budget = tiles(signalOf(slanted), 0.1_deg).budget;
+    ASSERT_EQ(budget.size(), 7U);
+    for (const BudgetComponent& component : budget) {
+        EXPECT_TRUE(component.type == 'A' || component.type == 'B');
+        EXPECT_FALSE(name(component.correlation).empty());
+        if (component.name == "white reference, common") {
+            EXPECT_NEAR(component.medianRelative, 0.005, 5e-5);
+            EXPECT_EQ(component.correlation, Correlation::Common);
+        } else if (component.name == "white reference, per direction") {
+            EXPECT_EQ(component.medianRelative, 0);
+        } else {
+            EXPECT_GT(component.medianRelative, 0) << component.name;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace gonio::proc
