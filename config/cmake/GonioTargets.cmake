@@ -4,6 +4,7 @@
 add_library(gonio_options INTERFACE)
 target_compile_options(gonio_options INTERFACE
     -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wnon-virtual-dtor
+    -Wno-missing-field-initializers  # a designated initialiser leaves the rest at its default
     $<$<BOOL:${GONIO_WERROR}>:-Werror>)
 if(GONIO_SANITIZE)
     target_compile_options(gonio_options INTERFACE

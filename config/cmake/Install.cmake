@@ -1,4 +1,5 @@
-# `proc` installs as a package: find_package(gonio), target gonio::proc.
+# `proc` installs as a package: find_package(gonio), target gonio::proc. The program and the data
+# that it reads at run time are the component `program`.
 get_property(proc_targets GLOBAL PROPERTY GONIO_PROC_TARGETS)
 add_library(gonio_proc INTERFACE)
 add_library(gonio::proc ALIAS gonio_proc)
@@ -11,11 +12,35 @@ install(EXPORT gonioTargets NAMESPACE gonio:: COMPONENT proc
     DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/gonio)
 install(DIRECTORY proc COMPONENT proc DESTINATION include/gonio FILES_MATCHING PATTERN "*.h")
 
+# Static libraries hand their third-party libraries on to the consumer's link line, so the package
+# has to find them again: exactly those that a folder of proc links.
+set(linked_libraries)
+foreach(target IN LISTS proc_targets)
+    get_target_property(libraries ${target} LINK_LIBRARIES)
+    list(APPEND linked_libraries ${libraries})
+endforeach()
+set(GONIO_FIND_DEPENDENCIES "")
+foreach(package IN ITEMS Threads Eigen3 spdlog Ceres Imath OpenEXR nlohmann_json)
+    if(linked_libraries MATCHES "(^|;)${package}::")
+        string(APPEND GONIO_FIND_DEPENDENCIES "find_dependency(${package})\n")
+    endif()
+endforeach()
+if(linked_libraries MATCHES "PkgConfig::tomlplusplus")
+    string(APPEND GONIO_FIND_DEPENDENCIES "find_dependency(PkgConfig)\n"
+        "pkg_check_modules(tomlplusplus REQUIRED IMPORTED_TARGET tomlplusplus)\n")
+endif()
+
 include(CMakePackageConfigHelpers)
 configure_package_config_file(config/cmake/gonioConfig.cmake.in gonioConfig.cmake
     INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/gonio)
 write_basic_package_version_file(gonioConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_BINARY_DIR}/gonioConfig.cmake ${CMAKE_BINARY_DIR}/gonioConfigVersion.cmake
     COMPONENT proc DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/gonio)
-install(DIRECTORY config/rigs config/references config/demo COMPONENT program
-    DESTINATION share/gonio OPTIONAL)
+
+if(TARGET gonio)
+    # One place for the program in every build tree: scripts need not know where its sources are.
+    set_target_properties(gonio PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+    install(TARGETS gonio COMPONENT program)
+    install(DIRECTORY config/rigs config/references config/demo COMPONENT program
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/gonio OPTIONAL)
+endif()
