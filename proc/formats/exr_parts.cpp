@@ -1,0 +1,207 @@
+#include "proc/formats/exr_parts.h"
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfInputPart.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
+#include <OpenEXR/ImfMultiPartOutputFile.h>
+#include <OpenEXR/ImfOutputPart.h>
+#include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfThreading.h>
+
+#include <algorithm>
+#include <cstring>
+#include <exception>
+#include <stdexcept>
+#include <thread>
+
+#include "proc/formats/exr_header_walk.h"
+
+namespace gonio::proc {
+namespace {
+
+Error failed(const std::string& what) { return {ErrorKind::File, "exr: " + what}; }
+
+class MemoryOut : public Imf::OStream {
+public:
+    MemoryOut() : Imf::OStream("memory") {}
+    void write(const char c[], int n) override {
+        const std::size_t end = at_ + static_cast<std::size_t>(n);
+        if (bytes_.size() < end) bytes_.resize(end);
+        std::memcpy(bytes_.data() + at_, c, static_cast<std::size_t>(n));
+        at_ = end;
+    }
+    std::uint64_t tellp() override { return at_; }
+    void seekp(std::uint64_t at) override { at_ = static_cast<std::size_t>(at); }
+    std::string take() { return std::move(bytes_); }
+
+private:
+    std::string bytes_;
+    std::size_t at_ = 0;
+};
+
+class MemoryIn : public Imf::IStream {
+public:
+    explicit MemoryIn(std::string_view bytes) : Imf::IStream("memory"), bytes_(bytes) {}
+    bool read(char c[], int n) override {
+        if (n < 0 || at_ > bytes_.size() || static_cast<std::size_t>(n) > bytes_.size() - at_) {
+            throw std::runtime_error("the file ends early");
+        }
+        std::memcpy(c, bytes_.data() + at_, static_cast<std::size_t>(n));
+        at_ += static_cast<std::size_t>(n);
+        return at_ < bytes_.size();
+    }
+    std::uint64_t tellg() override { return at_; }
+    void seekg(std::uint64_t at) override { at_ = static_cast<std::size_t>(at); }
+
+private:
+    std::string_view bytes_;
+    std::size_t at_ = 0;
+};
+
+/// The library's pool, started once. Decoding stays on one thread: small files, hostile ones too.
+int encodingThreads() {
+    static const int threads = [] {
+        const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+        Imf::setGlobalThreadCount(cores);
+        return cores;
+    }();
+    return threads;
+}
+
+Imf::Header headerOf(const ExrPart& part) {
+    Imf::Header header(part.size.width, part.size.height);
+    header.setName(part.name);
+    header.setType(Imf::SCANLINEIMAGE);
+    header.compression() = Imf::ZIP_COMPRESSION;
+    header.zipCompressionLevel() = 1;  // noise hardly gets smaller with more work
+    for (const auto& [key, value] : part.text) header.insert(key, Imf::StringAttribute(value));
+    for (const auto& channel : part.floats) {
+        header.channels().insert(channel.first, Imf::Channel(Imf::FLOAT));
+    }
+    for (const auto& channel : part.counts) {
+        header.channels().insert(channel.first, Imf::Channel(Imf::UINT));
+    }
+    return header;
+}
+
+/// The library's view of one channel. It takes a mutable address for reading and writing alike.
+template <class T>
+Imf::Slice sliceOf(Imf::PixelType type, const T* pixels, Size size) {
+    char* base = const_cast<char*>(reinterpret_cast<const char*>(pixels));  // NOLINT
+    return {type, base, sizeof(T), sizeof(T) * static_cast<std::size_t>(size.width)};
+}
+
+Imf::FrameBuffer bufferOf(const ExrPart& part) {
+    Imf::FrameBuffer buffer;
+    for (const auto& [name, pixels] : part.floats) {
+        buffer.insert(name, sliceOf(Imf::FLOAT, pixels.data(), part.size));
+    }
+    for (const auto& [name, pixels] : part.counts) {
+        buffer.insert(name, sliceOf(Imf::UINT, pixels.data(), part.size));
+    }
+    return buffer;
+}
+
+std::string encode(std::span<const ExrPart> parts) {
+    std::vector<Imf::Header> headers;
+    for (const ExrPart& part : parts) headers.push_back(headerOf(part));
+    MemoryOut out;
+    {
+        Imf::MultiPartOutputFile file(
+            out, headers.data(), static_cast<int>(headers.size()), false, encodingThreads());
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            Imf::OutputPart part(file, static_cast<int>(i));
+            part.setFrameBuffer(bufferOf(parts[i]));
+            part.writePixels(parts[i].size.height);
+        }
+    }
+    return out.take();
+}
+
+/// The pixels may not be more than deflate can hold in the file (1032 : 1), whatever it promises.
+constexpr std::size_t kMostRatio = 1032;
+
+ExrPart emptyPart(const Imf::Header& header, std::size_t fileBytes) {
+    ExrPart part;
+    part.name = header.hasName() ? header.name() : "";
+    const Imath::Box2i window = header.dataWindow();
+    if (window.min != Imath::V2i(0, 0)) throw std::runtime_error("a picture does not start at 0,0");
+    part.size = {window.max.x + 1, window.max.y + 1};
+    for (auto it = header.begin(); it != header.end(); ++it) {
+        const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute());
+        if (text != nullptr) part.text[it.name()] = text->value();
+    }
+    std::size_t bytes = 0;
+    for (auto it = header.channels().begin(); it != header.channels().end(); ++it) {
+        const Imf::Channel& channel = it.channel();
+        if (channel.xSampling != 1 || channel.ySampling != 1) {
+            throw std::runtime_error("a channel is not sampled at every pixel");
+        }
+        bytes += part.size.pixels() * sizeof(float);
+        if (bytes / kMostRatio > fileBytes) throw std::runtime_error("more pixels than the file can hold");
+        if (channel.type == Imf::UINT) {
+            part.counts[it.name()].resize(part.size.pixels());
+        } else {
+            part.floats[it.name()].resize(part.size.pixels());
+        }
+    }
+    return part;
+}
+
+std::vector<ExrPart> decode(std::string_view bytes) {
+    MemoryIn in(bytes);
+    Imf::MultiPartInputFile file(in, 0, false);
+    std::vector<ExrPart> parts;
+    for (int i = 0; i < file.parts(); ++i) {
+        Imf::InputPart input(file, i);
+        ExrPart part = emptyPart(input.header(), bytes.size());
+        input.setFrameBuffer(bufferOf(part));
+        input.readPixels(0, part.size.height - 1);
+        parts.push_back(std::move(part));
+    }
+    return parts;
+}
+
+/// The library's messages end in dots and line ends, and name our memory as the file.
+std::string reason(const std::exception& thrown) {
+    std::string text = thrown.what();
+    if (const std::size_t dot = text.find_first_of("\n"); dot != std::string::npos) text.resize(dot);
+    while (!text.empty() && (text.back() == '.' || text.back() == ' ')) text.pop_back();
+    return text;
+}
+
+}  // namespace
+
+Result<std::string> encodeExr(std::span<const ExrPart> parts) {
+    if (parts.empty()) return failed("no parts to write");
+    for (const ExrPart& part : parts) {
+        const auto wrong = [&](const auto& channel) {
+            return channel.second.size() != part.size.pixels();
+        };
+        if (std::any_of(part.floats.begin(), part.floats.end(), wrong) ||
+            std::any_of(part.counts.begin(), part.counts.end(), wrong) || part.size.pixels() == 0) {
+            return Error{ErrorKind::Internal,
+                         "exr: part " + part.name + ": channels do not have its size"};
+        }
+    }
+    try {
+        return encode(parts);
+    } catch (const std::exception& thrown) {
+        return failed("not written: " + reason(thrown));
+    }
+}
+
+Result<std::vector<ExrPart>> decodeExr(std::string_view bytes, ExrLimits limits) {
+    if (auto walked = walkExrHeaders(bytes, limits); !walked) return walked.error();
+    try {
+        return decode(bytes);
+    } catch (const std::exception& thrown) {
+        return failed("damaged: " + reason(thrown));
+    }
+}
+
+}  // namespace gonio::proc

@@ -1,0 +1,39 @@
+#pragma once
+// The only door to OpenEXR: a file as plain parts, each with text attributes and float or unsigned
+// 32-bit channels of one size; multi-part, scan lines, ZIP. Bytes in memory, so that a reader sees
+// the whole file and its length before anything else.
+//
+// Decoding never trusts the bytes: attribute sizes, picture sizes, part count and compression are
+// checked by our own walk over the headers before the library sees them, and what the library
+// throws becomes an Error.
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "proc/core/image.h"
+#include "proc/core/result.h"
+
+namespace gonio::proc {
+
+struct ExrPart {
+    std::string name;
+    Size size;
+    std::map<std::string, std::string> text;
+    std::map<std::string, std::vector<float>> floats;          ///< row-major, size.pixels() long
+    std::map<std::string, std::vector<std::uint32_t>> counts;  ///< likewise
+};
+
+struct ExrLimits {
+    Size largest;
+    std::size_t parts = 0;
+};
+
+/// At least one part; names differ; every channel has size.pixels() values.
+[[nodiscard]] Result<std::string> encodeExr(std::span<const ExrPart> parts);
+[[nodiscard]] Result<std::vector<ExrPart>> decodeExr(std::string_view bytes, ExrLimits limits);
+
+}  // namespace gonio::proc

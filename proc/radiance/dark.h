@@ -1,0 +1,43 @@
+#pragma once
+// What the sensor says without light. A DarkFrame is the mean of N dark frames of one exposure, in
+// DN with the black level included, and the variance of that mean: read noise is alike all over a
+// sensor, so the variance is pooled over its pixels; with a single frame it is the noise model's.
+// A DarkLibrary holds one per granted exposure. Its match is exact: a dark frame of another
+// exposure holds another amount of dark current, and is refused by name rather than scaled.
+
+#include <map>
+#include <span>
+
+#include "proc/core/frame.h"
+#include "proc/core/result.h"
+#include "proc/radiance/noise.h"
+
+namespace gonio::proc {
+
+struct DarkFrame {
+    Image<float> mean;          ///< DN
+    double varianceOfMean = 0;  ///< DN^2, of each pixel of `mean`
+    Exposure exposure;
+    Window window;
+    double gainDb = 0;
+    int frames = 0;
+};
+
+/// Quality error when there is none, when one is lit, or when they differ in exposure or window.
+[[nodiscard]] Result<DarkFrame> averageDark(std::span<const Frame> frames,
+                                            const SensorNoise& noise);
+
+class DarkLibrary {
+public:
+    /// Replaces an earlier one of the same exposure.
+    void add(DarkFrame dark);
+    /// Quality error that names the exposure, when none fits this frame's exposure, window and
+    /// gain. The pointer stays good until the library changes.
+    [[nodiscard]] Result<const DarkFrame*> find(const Frame& frame) const;
+    [[nodiscard]] std::size_t size() const { return byExposure_.size(); }
+
+private:
+    std::map<Nanoseconds, DarkFrame> byExposure_;
+};
+
+}  // namespace gonio::proc

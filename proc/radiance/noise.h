@@ -1,0 +1,32 @@
+#pragma once
+// What the sensor adds to the light: the figures that turn DN into electrons and electrons into a
+// variance. A sample of e electrons taken over t seconds has the variance
+//     e + D t + s_r^2 + K^2 / 12
+// (shot noise, dark current's shot noise, read noise, rounding). Full scale ends the range; samples
+// above 95 % of it carry no information about the light.
+
+#include <algorithm>
+
+namespace gonio::proc {
+
+struct SensorNoise {
+    double electronsPerDn = 2.6;          ///< K
+    double readNoiseElectrons = 2.4;      ///< s_r
+    double darkElectronsPerSecond = 3.0;  ///< D, at 25 degC
+    double fullScaleDn = 4095;            ///< what a saturated pixel reads
+
+    /// Samples at or above this many DN (black level included) are masked.
+    [[nodiscard]] double saturationDn() const { return 0.95 * fullScaleDn; }
+
+    /// Variance in electrons^2 of one pixel that collected `electrons` in `seconds`: never below
+    /// that of a dark pixel, as the estimate of a dim light can be negative and its noise cannot.
+    [[nodiscard]] double variance(double electrons, double seconds) const {
+        return std::max(electrons, 0.0) + darkVariance(seconds);
+    }
+    [[nodiscard]] double darkVariance(double seconds) const {
+        return darkElectronsPerSecond * seconds + readNoiseElectrons * readNoiseElectrons +
+               electronsPerDn * electronsPerDn / 12;
+    }
+};
+
+}  // namespace gonio::proc

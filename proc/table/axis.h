@@ -1,0 +1,27 @@
+#pragma once
+// Where a number lies on an ascending axis: between which two nodes, and how far. The coordinate is
+// in the axis's own unit (degrees in files). Within 1e-9 of a node it is that node: angles that went
+// through radians and back still find it.
+
+#include <cstddef>
+#include <optional>
+#include <span>
+
+namespace gonio::proc {
+
+/// The value is (1 - t) node[low] + t node[high], t in [0, 1). At a node: low = high, t = 0.
+struct AxisPlace {
+    std::size_t low = 0, high = 0;
+    double t = 0;
+
+    [[nodiscard]] bool atNode() const { return low == high; }
+};
+
+/// Empty outside [first, last], and on an empty axis.
+[[nodiscard]] std::optional<AxisPlace> placeOn(std::span<const double> axis, double at);
+
+/// The same on a circle of 360: a value between the last node and the first one of the next turn
+/// lies between these two, where they are neighbours (a gap of at most 1.5 of the widest step).
+[[nodiscard]] std::optional<AxisPlace> placeOnCircle(std::span<const double> axis, double at);
+
+}  // namespace gonio::proc

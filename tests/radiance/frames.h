@@ -1,0 +1,43 @@
+#pragma once
+// Frames of a flat scene as the model sensor of noise.h takes them, black level 60 DN.
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <random>
+
+#include "proc/core/frame.h"
+#include "proc/radiance/noise.h"
+
+namespace gonio::test {
+
+inline constexpr double kBlackDn = 60;
+
+struct Shot {
+    double electronsPerSecond = 0;  ///< of the light, at full level
+    double seconds = 1e-3;
+    std::uint16_t level = 65535;  ///< 0: a dark frame
+};
+
+inline Frame take(const Shot& shot, Size size, std::mt19937_64& random) {
+    const proc::SensorNoise noise;
+    Frame frame;
+    frame.pixels = Image<std::uint16_t>(size);
+    frame.window = {.size = size};
+    frame.exposure = {.requested = {}, .granted = Nanoseconds(std::llround(shot.seconds * 1e9))};
+    frame.blackLevel = static_cast<std::uint16_t>(kBlackDn);
+    frame.levels = LedLevels::only(Band::G, shot.level);
+    if (shot.level > 0) frame.led = 1;
+    const double mean = shot.electronsPerSecond * shot.seconds * shot.level / 65535.0 +
+                        noise.darkElectronsPerSecond * shot.seconds;
+    // Far above full scale all pictures are alike.
+    std::poisson_distribution<int> light(std::clamp(mean, 1e-12, 1e6));
+    std::normal_distribution<double> read(0, noise.readNoiseElectrons);
+    for (std::uint16_t& pixel : frame.pixels.pixels()) {
+        const double dn = kBlackDn + (light(random) + read(random)) / noise.electronsPerDn;
+        pixel = static_cast<std::uint16_t>(std::clamp(std::round(dn), 0.0, noise.fullScaleDn));
+    }
+    return frame;
+}
+
+}  // namespace gonio::test
