@@ -1,0 +1,57 @@
+#include "daemon/material.h"
+
+#include "daemon/store.h"
+#include "proc/formats/open.h"
+#include "proc/models/spec.h"
+#include "proc/table/sample_lookup.h"
+#include "proc/table/specular_lookup.h"
+
+namespace gonio::daemon {
+namespace {
+
+constexpr std::string_view kModel = "model:";
+constexpr std::string_view kSample = "sample:";
+
+}  // namespace
+
+std::vector<Radians> Material::incidences() const {
+    std::vector<Radians> all;
+    if (sample != nullptr) {
+        for (const proc::LedTable& led : sample->leds) all.push_back(led.incidence);
+    } else if (table != nullptr) {
+        for (double degrees : table->incidenceDeg) all.push_back(Radians::fromDegrees(degrees));
+    } else {
+        all = {0_deg, 20_deg, 40_deg, 60_deg};
+    }
+    return all;
+}
+
+Result<Material> openMaterial(const std::string& f, const std::filesystem::path& store) {
+    if (f.starts_with(kModel)) {
+        auto model = proc::makeModel(std::string_view(f).substr(kModel.size()));
+        if (!model) return model.error();
+        return Material{.kind = "model", .scatterer = std::move(*model)};
+    }
+    std::filesystem::path file = f;
+    if (f.starts_with(kSample)) {
+        const Result<Store> opened = Store::open(store);
+        if (!opened) return opened.error();
+        const auto path = opened->sample(std::string_view(f).substr(kSample.size()), ".gonio");
+        if (!path) return path.error();
+        file = *path;
+    }
+    Result<std::unique_ptr<const Scatterer>> brdf = proc::openBrdf(file);
+    if (!brdf) return brdf.error();
+    Material material{.kind = "file", .scatterer = std::move(*brdf)};
+    if (const auto* sample = dynamic_cast<const proc::SampleLookup*>(material.scatterer.get())) {
+        material.kind = "gonio";
+        material.sample = &sample->set();
+    }
+    if (const auto* table = dynamic_cast<const proc::SpecularLookup*>(material.scatterer.get())) {
+        material.kind = "zemax";
+        material.table = &table->table();
+    }
+    return material;
+}
+
+}  // namespace gonio::daemon

@@ -1,0 +1,31 @@
+#pragma once
+// F on the command line: a path, `sample:NAME` of the store, or `model:SPEC`.
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "proc/core/result.h"
+#include "proc/core/scatterer.h"
+#include "proc/table/sample_set.h"
+#include "proc/table/specular_table.h"
+
+namespace gonio::daemon {
+
+struct Material {
+    std::string kind{};                            ///< "model", "gonio", "zemax"
+    std::shared_ptr<const Scatterer> scatterer{};  ///< shared with the simulated rig's stage
+    const proc::SampleSet* sample = nullptr;       ///< of the scatterer, when it is a .gonio
+    const proc::SpecularTable* table = nullptr;    ///< of the scatterer, when it is a Zemax file
+
+    /// The incidences that the material knows: the LEDs' where it is a formula.
+    [[nodiscard]] std::vector<Radians> incidences() const;
+};
+
+/// Usage error for a bad model, File error for a bad file; `store` is needed for sample:NAME only.
+[[nodiscard]] Result<Material> openMaterial(const std::string& f,
+                                            const std::filesystem::path& store);
+
+}  // namespace gonio::daemon

@@ -1,0 +1,230 @@
+#include "daemon/measurement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "proc/core/number_text.h"
+#include "proc/optics/spot.h"
+#include "proc/radiance/merge.h"
+
+namespace gonio::daemon {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kPixelsPerDegree = 6.6;  // where the lens fit starts
+constexpr Radians kUsableSpot = 75.3_deg;
+constexpr int kMirrorFrames = 4;
+constexpr double kWhiteOverBlack = 50;
+
+Direction lightAt(Radians incidence) { return Direction::fromSpherical(incidence, Radians(0)); }
+
+/// The bracket's captures, in the order in which they were taken.
+std::vector<proc::RawExposure> describeBracket(const std::vector<Frame>& frames, Band band) {
+    std::vector<proc::RawExposure> list;
+    for (const Frame& frame : frames) {
+        if (list.empty() || list.back().captureId != frame.captureId) {
+            list.push_back({.captureId = frame.captureId,
+                            .granted = frame.exposure.granted,
+                            .level = frame.levels[band],
+                            .frames = 0,
+                            .blackLevel = frame.blackLevel,
+                            .celsius = frame.celsius});
+        }
+        ++list.back().frames;
+    }
+    return list;
+}
+
+Result<proc::DarkLibrary> takeDarks(const Bench& bench, Sequencer& sequencer, int frames) {
+    Result<std::vector<proc::DarkFrame>> darks =
+        sequencer.darks(frames, [&] { bench.step("dark frames"); });
+    if (!darks) return darks.error();
+    proc::DarkLibrary library;
+    for (proc::DarkFrame& dark : *darks) library.add(std::move(dark));
+    return library;
+}
+
+std::string stateName(State state) {
+    return "LED " + std::to_string(state.led) + " " + std::string(letter(state.band));
+}
+
+double median(std::vector<double> values) {
+    if (values.empty()) return std::nan("");
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+double medianSignal(const proc::CellSignal& signal) {
+    std::vector<double> present;
+    for (std::size_t cell = 0; cell < signal.size(); ++cell) {
+        if (signal.present(cell)) present.push_back(signal.signal[cell]);
+    }
+    return median(std::move(present));
+}
+
+Json toJson(const proc::Budget& budget) {
+    Json list = Json::array();
+    for (const proc::BudgetComponent& component : budget) {
+        list.push_back({{"name", component.name},
+                        {"type", std::string(1, component.type)},
+                        {"correlation", proc::name(component.correlation)},
+                        {"median_relative", component.medianRelative}});
+    }
+    return list;
+}
+
+}  // namespace
+
+Result<Window> configureWindow(driver::Rig& rig) {
+    const Size sensor = rig.identify().sensor;
+    const int side = std::min(sensor.width, sensor.height);
+    const Window window{.x = (sensor.width - side) / 2,
+                        .y = (sensor.height - side) / 2,
+                        .size = {side, side},
+                        .binning = 1};
+    const Result<void> done = rig.configure(window);
+    if (!done) return done.error();
+    return window;
+}
+
+int mirrorSteps(const Bench& bench) {
+    return static_cast<int>(bench.profile.exposures.size() +
+                            proc::mirrorWedges().size() * bench.rig.identify().ledAngles.size());
+}
+
+int placementSteps(const Bench& bench) {
+    return static_cast<int>(bench.profile.exposures.size() +
+                            kBands.size() * bench.rig.identify().ledAngles.size());
+}
+
+Result<LensRecord> measureLens(const Bench& bench, const PlaceMirror& place) {
+    const Result<Window> window = configureWindow(bench.rig);
+    if (!window) return window.error();
+    Sequencer sequencer(bench.rig, bench.profile, bench.nextPlanStep);
+    const Result<proc::DarkLibrary> darks = takeDarks(bench, sequencer, kMirrorFrames);
+    if (!darks) return darks.error();
+    const std::vector<Radians> leds = bench.rig.identify().ledAngles;
+    std::vector<proc::MirrorSpot> spots;
+    for (const proc::Wedge& wedge : proc::mirrorWedges()) {
+        if (Result<void> placed = place(wedge); !placed) return placed.error();
+        for (int led = 0; led < static_cast<int>(leds.size()); ++led) {
+            const Direction seen =
+                proc::mirroredBy(wedge, lightAt(leds[static_cast<std::size_t>(led)]));
+            bench.step("mirror " + fixed(wedge.aboutX.degrees(), 0) + "/" +
+                       fixed(wedge.aboutY.degrees(), 0) + " LED " + std::to_string(led));
+            if (seen.theta() > kUsableSpot) continue;
+            const auto frames = sequencer.expose({led, Band::G},
+                                                 bench.profile.dimLevels.back(),
+                                                 bench.profile.exposures.front(),
+                                                 kMirrorFrames);
+            if (!frames) return frames.error();
+            const auto merged = proc::merge(*frames, Band::G, *darks, bench.profile.noise);
+            if (!merged) return merged.error();
+            const Result<proc::Spot> spot = proc::findSpot(*merged);
+            if (!spot) return spot.error();
+            spots.push_back({.direction = seen, .at = spot->at, .sigma = spot->sigma});
+        }
+    }
+    const proc::SensorPoint middle{window->x + 0.5 * window->size.width,
+                                   window->y + 0.5 * window->size.height};
+    Result<proc::LensFit> fit = proc::fitLens(spots, middle, kPixelsPerDegree);
+    if (!fit) return fit.error();
+    return LensRecord{
+        .fit = std::move(*fit), .spots = static_cast<int>(spots.size()), .dateUtc = {}};
+}
+
+Result<Captured> measurePlacement(const Bench& bench,
+                                  const proc::LensMap& lens,
+                                  const BracketPlan& plan,
+                                  int darkFrames) {
+    const Result<Window> window = configureWindow(bench.rig);
+    if (!window) return window.error();
+    Captured captured;
+    Sequencer sequencer(bench.rig, bench.profile, bench.nextPlanStep);
+    const Result<proc::DarkLibrary> darks = takeDarks(bench, sequencer, darkFrames);
+    if (!darks) return darks.error();
+    const Stopwatch preparing(bench.clock);
+    const proc::Binning binning(lens, *window, kField);
+    captured.compute += preparing.elapsed();
+    captured.signals.resize(bench.rig.identify().ledAngles.size());
+    double chiSquare = 0;
+    double freedom = 0;
+    for (const State state : sequencer.states()) {
+        const auto frames = sequencer.bracket(state, plan);
+        if (!frames) return frames.error();
+        const Stopwatch processing(bench.clock);
+        Result<proc::MergedState> merged =
+            proc::merge(*frames, state.band, *darks, bench.profile.noise);
+        if (!merged) return merged.error();
+        captured.signals[static_cast<std::size_t>(state.led)][index(state.band)] =
+            binning.bin(*merged);
+        captured.compute += processing.elapsed();
+        chiSquare += merged->chiSquare;
+        freedom += static_cast<double>(merged->freedom);
+        captured.raw.states.push_back(
+            {.merged = std::move(*merged), .bracket = describeBracket(*frames, state.band)});
+        bench.step(stateName(state));
+    }
+    captured.chiSquarePerFreedom = freedom > 0 ? chiSquare / freedom : 1;
+    return captured;
+}
+
+Result<void> checkWhite(const PlacementSignals& white, const PlacementSignals& black) {
+    for (std::size_t led = 0; led < white.size(); ++led) {
+        for (Band band : kBands) {
+            const double bright = medianSignal(white[led][index(band)]);
+            const double dark = medianSignal(black[led][index(band)]);
+            if (bright > kWhiteOverBlack * std::abs(dark)) continue;
+            return Error{ErrorKind::Quality,
+                         stateName({static_cast<int>(led), band}) + ": white is only " +
+                             fixed(bright / dark, 1) +
+                             " times as bright as black; is the white reference placed?"};
+        }
+    }
+    return {};
+}
+
+proc::SampleSet calibrateSample(const PlacementSignals& signals,
+                                const std::vector<Radians>& ledAngles,
+                                const RigReferences& references,
+                                proc::SampleInfo info) {
+    proc::SampleSet set;
+    Json budgets = Json::array();
+    std::vector<double> relative;
+    const auto uAngle = [&](const Direction& wo) { return references.lens.fit.uncertainty(wo); };
+    for (std::size_t led = 0; led < signals.size(); ++led) {
+        proc::LedTable table{.incidence = ledAngles[led], .bands = {}};
+        for (Band band : kBands) {
+            const std::size_t b = index(band);
+            proc::Calibrated calibrated =
+                proc::calibrate(signals[led][b],
+                                {.whiteSignal = references.white.signals[led][b],
+                                 .blackSignal = references.black.signals[led][b],
+                                 .white = *references.certified.white,
+                                 .black = *references.certified.black},
+                                lightAt(ledAngles[led]),
+                                band,
+                                uAngle);
+            const proc::CellSamples& cells = calibrated.samples;
+            for (std::size_t cell = 0; cell < cells.size(); ++cell) {
+                if (cells.present(cell) && cells.f[cell] > 0) {
+                    relative.push_back(cells.at(cell).u() / cells.f[cell]);
+                }
+            }
+            budgets.push_back({{"led", led},
+                               {"band", std::string(letter(band))},
+                               {"components", toJson(calibrated.budget)}});
+            table.bands[b] = std::move(calibrated.samples);
+        }
+        set.leds.push_back(std::move(table));
+    }
+    info.budgetJson = budgets.dump();
+    if (!relative.empty()) info.achievedUncertainty = median(std::move(relative));
+    set.info = std::move(info);
+    return set;
+}
+
+}  // namespace gonio::daemon

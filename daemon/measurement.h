@@ -1,0 +1,69 @@
+#pragma once
+// Whole measurements on an opened rig: the mirror's lens map, a reference's signals, a sample's f.
+// Frames are merged and binned state by state, so that a measurement never holds more than one
+// bracket.
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "daemon/profile.h"
+#include "daemon/references.h"
+#include "daemon/rig_calibration.h"
+#include "daemon/sequencer.h"
+#include "driver/rig.h"
+#include "proc/calibrate/two_point.h"
+#include "proc/formats/graw_exr.h"
+#include "proc/optics/mirror.h"
+
+namespace gonio::daemon {
+
+/// What a measurement needs of its surroundings; all borrowed.
+struct Bench {
+    driver::Rig& rig;
+    const RigProfile& profile;
+    std::uint64_t& nextPlanStep;
+    const Clock& clock;                            ///< of the computer, for compute seconds
+    std::function<void(const std::string&)> step;  ///< one step of progress is done
+};
+
+/// The window that is read: the square in the middle of the sensor.
+[[nodiscard]] Result<Window> configureWindow(driver::Rig& rig);
+
+/// Steps of progress that each measurement reports.
+[[nodiscard]] int mirrorSteps(const Bench& bench);
+[[nodiscard]] int placementSteps(const Bench& bench);
+
+/// The operator, or the simulated rig's own door: puts the mirror on a wedge.
+using PlaceMirror = std::function<Result<void>(const proc::Wedge&)>;
+[[nodiscard]] Result<LensRecord> measureLens(const Bench& bench, const PlaceMirror& place);
+
+/// All states of what lies under the rig.
+struct Captured {
+    PlacementSignals signals;
+    proc::RawCapture raw;
+    double chiSquarePerFreedom = 0;  ///< of all merges; 1 where noise alone differs
+    Seconds compute{0};
+};
+[[nodiscard]] Result<Captured> measurePlacement(const Bench& bench,
+                                                const proc::LensMap& lens,
+                                                const BracketPlan& plan,
+                                                int darkFrames);
+
+/// Quality error when white is not far brighter than black.
+[[nodiscard]] Result<void> checkWhite(const PlacementSignals& white, const PlacementSignals& black);
+
+/// Signals -> f, with the budget of each state as JSON in `info.budgetJson` and the achieved
+/// uncertainty (median, k = 1, relative) in `info`.
+struct RigReferences {
+    const LensRecord& lens;
+    const ReferenceRecord& white;
+    const ReferenceRecord& black;
+    const References& certified;
+};
+[[nodiscard]] proc::SampleSet calibrateSample(const PlacementSignals& signals,
+                                              const std::vector<Radians>& ledAngles,
+                                              const RigReferences& references,
+                                              proc::SampleInfo info);
+
+}  // namespace gonio::daemon

@@ -1,0 +1,113 @@
+#include "daemon/profile.h"
+
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <iomanip>
+#include <optional>
+#include <span>
+#include <sstream>
+
+#include "driver/protocol/crc.h"
+#include "proc/formats/file_bytes.h"
+
+namespace gonio::daemon {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Reads keys of one file; remembers the first that is missing or out of its domain.
+class Keys {
+public:
+    Keys(const toml::table& table, std::string file) : table_(table), file_(std::move(file)) {}
+
+    double positive(std::string_view key) {
+        const auto value = table_.at_path(key).value<double>();
+        if (!value || !(*value > 0)) complain(key, "a number above 0");
+        return value.value_or(1);
+    }
+    std::string text(std::string_view key) {
+        const auto value = table_.at_path(key).value<std::string>();
+        if (!value || value->empty()) complain(key, "a text");
+        return value.value_or("");
+    }
+    std::vector<double> positives(std::string_view key) {
+        std::vector<double> values;
+        const toml::array* array = table_.at_path(key).as_array();
+        if (array != nullptr) {
+            for (const toml::node& node : *array) {
+                const auto value = node.value<double>();
+                if (value && *value > 0) values.push_back(*value);
+            }
+        }
+        if (array == nullptr || values.empty() || values.size() != array->size()) {
+            complain(key, "a list of numbers above 0");
+        }
+        return values;
+    }
+    [[nodiscard]] const std::optional<Error>& error() const { return error_; }
+
+private:
+    void complain(std::string_view key, std::string_view wanted) {
+        if (error_) return;
+        error_ = Error{ErrorKind::File,
+                       file_ + ": key '" + std::string(key) + "': wanted " + std::string(wanted)};
+    }
+    const toml::table& table_;
+    std::string file_;
+    std::optional<Error> error_;
+};
+
+std::string hashOf(std::string_view text) {
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(text.data());
+    std::ostringstream hex;
+    hex << std::hex << std::setw(8) << std::setfill('0')
+        << driver::crc32c(std::span(bytes, text.size()));
+    return hex.str();
+}
+
+}  // namespace
+
+fs::path configDirectory() {
+    if (const char* set = std::getenv("GONIO_CONFIG"); set != nullptr && *set != '\0') return set;
+    std::error_code ignored;
+    const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
+    const fs::path installed = program.parent_path().parent_path() / "share" / "gonio";
+    if (fs::is_directory(installed / "rigs", ignored)) return installed;
+    return GONIO_CONFIG_DIR;
+}
+
+fs::path defaultProfile() { return configDirectory() / "rigs" / "minidiff-usb2.toml"; }
+
+Result<RigProfile> readProfile(const fs::path& file) {
+    const Result<std::string> text = proc::readFile(file);
+    if (!text) return text.error();
+    toml::table table;
+    try {
+        table = toml::parse(*text);
+    } catch (const toml::parse_error& error) {
+        return Error{ErrorKind::File, file.string() + ": " + std::string(error.description())};
+    }
+    Keys keys(table, file.string());
+    RigProfile profile;
+    profile.hash = hashOf(*text);
+    profile.name = keys.text("name");
+    profile.noise.electronsPerDn = keys.positive("sensor.electrons_per_dn");
+    profile.noise.readNoiseElectrons = keys.positive("sensor.read_noise_electrons");
+    profile.noise.darkElectronsPerSecond = keys.positive("sensor.dark_electrons_per_second");
+    profile.noise.fullScaleDn = keys.positive("sensor.full_scale_dn");
+    for (double us : keys.positives("bracket.exposures_us")) {
+        profile.exposures.emplace_back(static_cast<std::int64_t>(us));
+    }
+    profile.dimLevels = keys.positives("bracket.dim_levels");
+    profile.whiteReference = configDirectory() / keys.text("references.white");
+    profile.blackReflectance = keys.positive("references.black_reflectance");
+    profile.blackRelativeUncertainty = keys.positive("references.black_relative_uncertainty");
+    if (keys.error()) return *keys.error();
+    std::sort(profile.exposures.begin(), profile.exposures.end());
+    std::sort(profile.dimLevels.rbegin(), profile.dimLevels.rend());
+    return profile;
+}
+
+}  // namespace gonio::daemon

@@ -1,0 +1,34 @@
+#pragma once
+// What the host knows of a kind of rig before it asks it: config/rigs/*.toml.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "proc/core/result.h"
+#include "proc/core/units.h"
+#include "proc/radiance/noise.h"
+
+namespace gonio::daemon {
+
+struct RigProfile {
+    std::string name;
+    std::string hash;  ///< of the file's bytes: eight hexadecimal digits
+    proc::SensorNoise noise;
+    std::vector<Microseconds> exposures;  ///< ascending
+    std::vector<double> dimLevels;        ///< fractions of full level, descending
+    std::filesystem::path whiteReference;
+    double blackReflectance = 0;
+    double blackRelativeUncertainty = 0;
+};
+
+/// Where config/ is: $GONIO_CONFIG, beside the installed program, or the source tree.
+[[nodiscard]] std::filesystem::path configDirectory();
+
+/// config/rigs/minidiff-usb2.toml.
+[[nodiscard]] std::filesystem::path defaultProfile();
+
+/// Errors name the file and the key. Paths inside are taken relative to configDirectory().
+[[nodiscard]] Result<RigProfile> readProfile(const std::filesystem::path& file);
+
+}  // namespace gonio::daemon

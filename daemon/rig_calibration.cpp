@@ -1,0 +1,131 @@
+#include "daemon/rig_calibration.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "proc/formats/file_bytes.h"
+#include "proc/formats/gonio_exr.h"
+
+namespace gonio::daemon {
+namespace {
+
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+constexpr const char* kLensSchema = "gonio/lens/1";
+
+Error notCalibrated(const fs::path& folder, const std::string& what) {
+    return {ErrorKind::Quality,
+            "rig " + folder.filename().string() + " has no " + what + " calibration; place the " +
+                what + " and run: gonio calibrate " + what};
+}
+
+Result<void> makeFolder(const fs::path& folder) {
+    std::error_code failed;
+    fs::create_directories(folder, failed);
+    if (!failed) return {};
+    return Error{ErrorKind::Busy,
+                 "store: cannot make " + folder.string() + ": " + failed.message()};
+}
+
+proc::CellSamples toSamples(const proc::CellSignal& signal) {
+    proc::CellSamples samples = proc::CellSamples::missing(signal.size());
+    for (std::size_t cell = 0; cell < signal.size(); ++cell) {
+        samples.f[cell] = signal.signal[cell];
+        samples.uRandom[cell] = std::sqrt(signal.variance[cell]);
+        if (signal.present(cell)) samples.uSystematic[cell] = 0;
+    }
+    samples.nEff = signal.nEff;
+    samples.flags = signal.flags;
+    return samples;
+}
+
+proc::CellSignal toSignal(const proc::CellSamples& samples) {
+    proc::CellSignal signal = proc::CellSignal::missing(samples.size());
+    for (std::size_t cell = 0; cell < samples.size(); ++cell) {
+        signal.variance[cell] = samples.uRandom[cell] * samples.uRandom[cell];
+    }
+    signal.signal = samples.f;
+    signal.nEff = samples.nEff;
+    signal.flags = samples.flags;
+    return signal;
+}
+
+}  // namespace
+
+Result<void> writeLens(const fs::path& folder, const LensRecord& lens) {
+    if (Result<void> made = makeFolder(folder); !made) return made;
+    const auto values = lens.fit.map.values();
+    const Eigen::MatrixXd& covariance = lens.fit.covariance;
+    const Json json = {
+        {"schema", kLensSchema},
+        {"date", lens.dateUtc},
+        {"spots", lens.spots},
+        {"parameters", {"centre_x_px", "centre_y_px", "rotation_rad", "a", "b", "c1", "c3", "c5"}},
+        {"values", values},
+        {"covariance",
+         std::vector<double>(covariance.data(), covariance.data() + covariance.size())},
+        {"rms_px", lens.fit.rmsPixels},
+        {"worst_px", lens.fit.worstPixels}};
+    return proc::writeFile(folder / "lens.json", json.dump(2) + "\n");
+}
+
+Result<LensRecord> readLens(const fs::path& folder) {
+    const fs::path file = folder / "lens.json";
+    if (!fs::exists(file)) return notCalibrated(folder, "mirror");
+    const Result<std::string> text = proc::readFile(file);
+    if (!text) return text.error();
+    try {
+        const Json json = Json::parse(*text);
+        constexpr std::size_t kN = proc::LensMap::kParameters;
+        const auto values = json.at("values").get<std::vector<double>>();
+        const auto covariance = json.at("covariance").get<std::vector<double>>();
+        if (json.at("schema") != kLensSchema || values.size() != kN ||
+            covariance.size() != kN * kN) {
+            throw std::runtime_error("not a lens map of this version");
+        }
+        const auto n = static_cast<Eigen::Index>(kN);
+        return LensRecord{
+            .fit = {.map = proc::LensMap::fromValues(values),
+                    .covariance = Eigen::Map<const Eigen::MatrixXd>(covariance.data(), n, n),
+                    .rmsPixels = json.at("rms_px").get<double>(),
+                    .worstPixels = json.at("worst_px").get<double>()},
+            .spots = json.at("spots").get<int>(),
+            .dateUtc = json.at("date").get<std::string>()};
+    } catch (const std::exception& error) {
+        return Error{ErrorKind::File,
+                     file.string() + ": " + error.what() + "; run: gonio calibrate mirror"};
+    }
+}
+
+Result<void> writeSignals(const fs::path& folder,
+                          const std::string& name,
+                          const proc::SampleInfo& info,
+                          const std::vector<Radians>& ledAngles,
+                          const PlacementSignals& signals) {
+    if (Result<void> made = makeFolder(folder); !made) return made;
+    proc::SampleSet set{.info = info, .leds = {}};
+    for (std::size_t led = 0; led < signals.size(); ++led) {
+        proc::LedTable table{.incidence = ledAngles[led], .bands = {}};
+        for (Band band : kBands) {
+            table.bands[index(band)] = toSamples(signals[led][index(band)]);
+        }
+        set.leds.push_back(std::move(table));
+    }
+    return proc::writeGonio(folder / (name + ".gonio"), set);
+}
+
+Result<ReferenceRecord> readSignals(const fs::path& folder, const std::string& name) {
+    const fs::path file = folder / (name + ".gonio");
+    if (!fs::exists(file)) return notCalibrated(folder, name);
+    const Result<proc::SampleSet> set = proc::readGonio(file);
+    if (!set) return set.error();
+    ReferenceRecord record{.info = set->info, .signals = {}};
+    for (const proc::LedTable& led : set->leds) {
+        auto& bands = record.signals.emplace_back();
+        for (Band band : kBands) bands[index(band)] = toSignal(led.bands[index(band)]);
+    }
+    return record;
+}
+
+}  // namespace gonio::daemon

@@ -1,0 +1,36 @@
+#pragma once
+// The simulated rig of a store: what it is and what lies under it is kept in sim.json between one
+// call of the program and the next, so that `gonio sim place white` and `gonio calibrate white` are
+// two commands, as they are with a rig on a table.
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "daemon/store.h"
+#include "sim/in_process.h"
+
+namespace gonio::daemon {
+
+struct SimState {
+    std::string serial = "SIM-0001";
+    std::uint64_t seed = 1;
+    std::string systematic = "random";  ///< errors of the references: none, random, stratum:K
+    std::string placed = "nothing";     ///< nothing, black, white, mirror, or F
+    sim::Wedge wedge;
+    std::uint64_t nextPlanStep = 1;  ///< no two captures share their noise
+};
+
+/// The defaults when there is no sim.json yet.
+[[nodiscard]] Result<SimState> readSimState(const Store& store);
+Result<void> writeSimState(const Store& store, const SimState& state);
+
+/// What `placed` names, ready to be put under the rig. Black and white are the certified references
+/// of the rig profile; their errors are the simulator's.
+[[nodiscard]] Result<sim::Placement> makePlacement(const SimState& state, const Store& store);
+
+/// A rig as the state says, with its placement under it.
+[[nodiscard]] Result<std::unique_ptr<sim::InProcessDoor>> openSim(const SimState& state,
+                                                                  const Store& store);
+
+}  // namespace gonio::daemon
