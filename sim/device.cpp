@@ -417,11 +417,8 @@ std::uint16_t Device::setFormat(const SetFormat& args, Arguments& result) {
         return status::kBadArg;
     }
     format_ = {.format = args.format,
-               .x = args.x,
-               .y = args.y,
-               .size = {args.width, args.height},
+               .view = {.x = args.x, .y = args.y, .size = {args.width, args.height}},
                .binning = args.binning};
-    rates_.clear();
     result = encodeU32(*stride * static_cast<std::uint32_t>(args.height / args.binning));
     return status::kOk;
 }
@@ -547,11 +544,14 @@ void Device::beginExposureIfDue() {
 }
 
 const RateImages& Device::rates(int led) {
+    const View& view = format_.view;
+    if (view != ratesView_) rates_.clear();
+    ratesView_ = view;
     const auto found = rates_.find(led);
     if (found != rates_.end()) return found->second;
-    const ImagePoint corner{static_cast<double>(format_.x), static_cast<double>(format_.y)};
+    const ImagePoint corner{static_cast<double>(view.x), static_cast<double>(view.y)};
     return rates_
-        .emplace(led, rateImages(placement_, config_.errors, optics_, format_.size, corner, led))
+        .emplace(led, rateImages(placement_, config_.errors, optics_, view.size, corner, led))
         .first->second;
 }
 
@@ -590,7 +590,7 @@ void Device::queueFrame(const Exposing& done, int index) {
             rate = &images[band];
             level = s.levels[band] / 65535.0;
         } else {
-            sum = Image<float>(format_.size);
+            sum = Image<float>(format_.view.size);
             for (std::size_t c = 0; c < 3; ++c) {
                 const auto share = static_cast<float>(s.levels[c] / 65535.0);
                 for (std::size_t i = 0; i < sum.pixels().size(); ++i) {
@@ -602,7 +602,7 @@ void Device::queueFrame(const Exposing& done, int index) {
     }
     const Nanoseconds exposure = grantedExposure(s.exposureUs);
     const Image<std::uint16_t> image =
-        sensor_.expose(rate, level, exposure, format_.size, key, format_.binning);
+        sensor_.expose(rate, level, exposure, format_.view.size, key, format_.binning);
     const std::vector<std::uint8_t> bytes = packPixels(image, format_.format);
 
     Leader leader;
@@ -620,8 +620,8 @@ void Device::queueFrame(const Exposing& done, int index) {
     if (s.led >= 0) leader.ledLevel = s.levels;
     leader.temperature = kTemperatures;
     leader.blackLevel = kBlackLevel;
-    leader.x = static_cast<std::uint16_t>(format_.x);
-    leader.y = static_cast<std::uint16_t>(format_.y);
+    leader.x = static_cast<std::uint16_t>(format_.view.x);
+    leader.y = static_cast<std::uint16_t>(format_.view.y);
     leader.binning = static_cast<std::uint8_t>(format_.binning);
     leader.frameBytes = static_cast<std::uint32_t>(bytes.size());
     leader.exposureStartUs = microseconds(done.start);

@@ -63,10 +63,15 @@ private:
         std::uint16_t gain = 0;
         bool operator==(const Settings&) const = default;
     };
-    struct Format {
-        driver::PixelFormat format = driver::PixelFormat::Mono12Packed;
+    /// The part of the sensor that is read.
+    struct View {
         int x = 0, y = 0;
         Size size = kSensorSize;
+        bool operator==(const View&) const = default;
+    };
+    struct Format {
+        driver::PixelFormat format = driver::PixelFormat::Mono12Packed;
+        View view;
         int binning = 1;
     };
     struct Session {
@@ -129,7 +134,8 @@ private:
     Optics optics_;
     Sensor sensor_;
     Placement placement_;
-    std::map<int, RateImages> rates_;  // per LED, of the placement
+    std::map<int, RateImages> rates_;  // per LED, of the placement and of ratesView_
+    View ratesView_;
 
     Nanoseconds now_{0};
     std::uint32_t bootId_;

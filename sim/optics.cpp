@@ -53,7 +53,13 @@ std::optional<Direction> Optics::directionAt(ImagePoint at) const {
     const double v = s * along + c * across;
     const double r = std::hypot(u, v);
     double theta = r / scale_;
-    for (int i = 0; i < 6; ++i) theta -= (radius(theta) - r) / radiusSlope(theta);
+    // Newton doubles the digits, and the mapping is nearly linear: after a step below 1e-9 radians
+    // theta is exact. Two or three steps within the field.
+    double step = 1;
+    for (int i = 0; i < 6 && std::abs(step) > 1e-9; ++i) {
+        step = (radius(theta) - r) / radiusSlope(theta);
+        theta -= step;
+    }
     if (theta > kFieldStop) return std::nullopt;
     return Direction::fromSpherical(Radians(theta), Radians(std::atan2(-v, u) - rotation_));
 }

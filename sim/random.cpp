@@ -6,7 +6,7 @@
 namespace gonio::sim {
 namespace {
 
-constexpr double kInversionLimit = 30;
+constexpr double kInversionLimit = 10;
 
 // A 64-bit finaliser: every input bit flips every output bit with probability near 1/2.
 std::uint64_t scramble(std::uint64_t x) {
@@ -49,6 +49,12 @@ double tailQuantile(double p) {
             1);
 }
 
+/// The nearest whole number; x >= 0. (std::round is a call into the library.)
+double wholeNumber(double x) {
+    if (x >= 0x1p52) return x;  // all doubles are whole from here
+    return static_cast<double>(static_cast<std::int64_t>(x + 0.5));
+}
+
 }  // namespace
 
 std::uint64_t mixed(std::uint64_t a, std::uint64_t b) {
@@ -72,12 +78,12 @@ double gaussian(std::uint64_t key, std::uint64_t counter) {
 }
 
 double poisson(double mean, double u) {
-    if (mean <= 0) return 0;
+    if (u <= 1 - mean) return 0;  // at most exp(-mean): most pixels of a dark frame end here
     if (mean > kInversionLimit) {
         const double z = normalQuantile(u);
-        const double root = std::sqrt(mean);
+        const double root = std::sqrt(mean - 1.0 / 12);  // rounding adds the rest of the variance
         const double x = mean + root * z + (z * z - 1) / 6 - (z * z * z - z) / (72 * root);
-        return std::max(0.0, std::round(x));
+        return wholeNumber(std::max(0.0, x));
     }
     double term = std::exp(-mean);
     double sum = term;

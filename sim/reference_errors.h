@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "proc/core/bands.h"
 #include "proc/core/direction.h"
@@ -15,6 +16,18 @@
 namespace gonio::sim {
 
 inline constexpr int kStrata = 20;
+
+/// The factors of the white under one LED: ReferenceErrors::white with its nodes in a table.
+/// Directions above the horizon, here and there.
+class WhiteErrors {
+public:
+    [[nodiscard]] LedBands factor(const Direction& wo) const;
+
+private:
+    friend class ReferenceErrors;
+    double common_ = 1;
+    std::vector<LedBands> nodes_;  ///< the field's deviates, by node; empty: no errors
+};
 
 class ReferenceErrors {
 public:
@@ -29,6 +42,8 @@ public:
 
     /// Factors on the certified f.
     [[nodiscard]] double white(int led, Band band, const Direction& wo) const;
+    /// The same for many directions: all that does not depend on them, worked out once.
+    [[nodiscard]] WhiteErrors white(int led) const;
     [[nodiscard]] double black() const;
 
     /// Standard deviate of a component, for tests: 0 common white, 1 black, from 2 on field nodes.

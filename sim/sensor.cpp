@@ -19,6 +19,12 @@ constexpr double kNonUniformity = 0.007;
 constexpr std::int64_t kOffsetNs = 14'260;  // between the line time and the effective exposure
 constexpr std::int64_t kLineNs = 10LL * kExposureStep;
 
+/// The nearest DN. The black level keeps it positive, so that cutting off rounds.
+std::uint16_t digitised(double electrons) {
+    const double dn = electrons / kElectronsPerDn + kBlackLevel;
+    return static_cast<std::uint16_t>(std::clamp(dn, 0.0, double{kFullScale}) + 0.5);
+}
+
 }  // namespace
 
 Nanoseconds grantedExposure(std::uint32_t requestedUs) {
@@ -51,21 +57,21 @@ Image<std::uint16_t> Sensor::expose(const Image<float>* rate,
     const double dark = kDarkAt25 * std::exp2((kSensorCelsius - 25) / kDoublingKelvin) * seconds;
     const std::uint64_t shotKey = mixed(mixed(mixed(key.seed, key.planStep), key.frameIndex), 1);
     const std::uint64_t readKey = mixed(shotKey, 2);
+    const double gain = level * seconds;
     Image<std::uint16_t> full(size);
     parallelFor(static_cast<std::size_t>(size.height), [&](IndexRange rows) {
-        for (std::size_t row = rows.begin; row < rows.end; ++row) {
-            for (int x = 0; x < size.width; ++x) {
-                const int y = static_cast<int>(row);
-                const std::uint64_t pixel = row * static_cast<std::uint64_t>(kSensorSize.width) +
-                                            static_cast<std::uint64_t>(x);
-                const double light = rate == nullptr ? 0
-                                                     : double{rate->at(x, y)} * level * seconds *
-                                                           double{response_.at(x, y)};
+        for (std::size_t y = rows.begin; y < rows.end; ++y) {
+            const int row = static_cast<int>(y);
+            const auto response = response_.row(row);
+            const auto out = full.row(row);
+            for (std::size_t x = 0; x < out.size(); ++x) {
+                const std::uint64_t pixel = y * static_cast<std::uint64_t>(kSensorSize.width) + x;
+                const double light =
+                    rate == nullptr ? 0 : double{rate->row(row)[x]} * gain * double{response[x]};
                 const double electrons =
                     std::min(kFullWell, poisson(light + dark, uniform(shotKey, pixel))) +
                     kReadNoise * gaussian(readKey, pixel);
-                const double dn = std::round(electrons / kElectronsPerDn) + kBlackLevel;
-                full.at(x, y) = static_cast<std::uint16_t>(std::clamp(dn, 0.0, double{kFullScale}));
+                out[x] = digitised(electrons);
             }
         }
     });

@@ -15,20 +15,26 @@ constexpr int kDiscSamples = 4;  // per pixel side, at the disc's edge
 
 double orZero(double f) { return std::isfinite(f) ? f : 0; }
 
+/// The factors on the surface's f that its certificate does not know.
+struct SurfaceErrors {
+    SurfaceErrors(const Placement& placement, const ReferenceErrors& errors, int led) {
+        if (placement.role == Role::White) white = errors.white(led);
+        if (placement.role == Role::Black) black = errors.black();
+    }
+    WhiteErrors white;
+    double black = 1;
+};
+
 /// f cos(theta_o) of the placement in one direction, per band.
 LedBands surfaceLight(const Placement& placement,
-                      const ReferenceErrors& errors,
+                      const SurfaceErrors& errors,
                       int led,
                       const Direction& wo) {
     if (placement.surface == nullptr) return {};
     const Answer answer = placement.surface->answer({.in = ledDirection(led), .out = wo});
+    const LedBands white = errors.white.factor(wo);
     LedBands light;
-    for (Band b : kBands) {
-        double factor = 1;
-        if (placement.role == Role::White) factor = errors.white(led, b, wo);
-        if (placement.role == Role::Black) factor = errors.black();
-        light[b] = orZero(answer.f[b]) * wo.z() * factor;
-    }
+    for (Band b : kBands) light[b] = orZero(answer.f[b]) * wo.z() * white[b] * errors.black;
     return light;
 }
 
@@ -75,13 +81,14 @@ RateImages rateImages(const Placement& placement,
                       int led) {
     RateImages images{Image<float>(size), Image<float>(size), Image<float>(size)};
     const Direction image = mirrored(ledDirection(led), placement.wedge);
+    const SurfaceErrors surfaceErrors(placement, errors, led);
     parallelFor(static_cast<std::size_t>(size.height), [&](IndexRange rows) {
         for (std::size_t row = rows.begin; row < rows.end; ++row) {
             for (int x = 0; x < size.width; ++x) {
                 const ImagePoint pixel{corner.x + x, corner.y + static_cast<double>(row)};
                 const auto wo = optics.directionAt({pixel.x + 0.5, pixel.y + 0.5});
                 if (!wo) continue;
-                LedBands light = surfaceLight(placement, errors, led, *wo);
+                LedBands light = surfaceLight(placement, surfaceErrors, led, *wo);
                 if (placement.role == Role::Mirror) {
                     light = LedBands::all(mirrorLight(optics, pixel, *wo, image));
                 }

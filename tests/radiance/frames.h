@@ -30,7 +30,8 @@ inline Frame take(const Shot& shot, Size size, std::mt19937_64& random) {
     if (shot.level > 0) frame.led = 1;
     const double mean = shot.electronsPerSecond * shot.seconds * shot.level / 65535.0 +
                         noise.darkElectronsPerSecond * shot.seconds;
-    // Far above full scale all pictures are alike.
+    // Far above full scale all pictures are alike; and where the mean does not fit an int, the
+    // distribution would look for a number for ever.
     std::poisson_distribution<int> light(std::clamp(mean, 1e-12, 1e6));
     std::normal_distribution<double> read(0, noise.readNoiseElectrons);
     for (std::uint16_t& pixel : frame.pixels.pixels()) {

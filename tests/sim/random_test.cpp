@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace gonio::sim {
@@ -45,7 +46,7 @@ TEST(Random, QuantileIsTheInverseOfTheDistribution) {
 }
 
 TEST(Random, PoissonHasItsMomentsOnBothSidesOfTheThreshold) {
-    for (double mean : {0.0, 0.1, 0.5, 5.0, 29.9, 30.0, 30.1, 100.0, 10000.0}) {
+    for (double mean : {0.0, 0.1, 0.5, 5.0, 9.9, 10.0, 10.1, 100.0, 10000.0}) {
         const Moments m =
             momentsOf(kDraws, [&](std::uint64_t i) { return poisson(mean, uniform(7, i)); });
         const double sigma = std::sqrt(mean);
@@ -55,6 +56,53 @@ TEST(Random, PoissonHasItsMomentsOnBothSidesOfTheThreshold) {
             EXPECT_NEAR(m.skewness, 1 / sigma, 0.03);
         }
     }
+}
+
+/// The largest u that draws at most k: what poisson() takes the distribution function to be.
+double distributionAt(double mean, double k) {
+    double low = 0, high = 1;
+    for (int i = 0; i < 60; ++i) {
+        const double u = (low + high) / 2;
+        (poisson(mean, u) <= k ? low : high) = u;
+    }
+    return low;
+}
+
+TEST(Random, PoissonJustAboveTenIsWrongByNoMoreThanItSays) {
+    double worstBefore = 3e-4;
+    for (double mean : {10.01, 30.0, 300.0}) {
+        double term = std::exp(-mean), exact = 0, before = 0;
+        double worst = 0, sum = 0, squares = 0;
+        for (double k = 0; k < mean + 9 * std::sqrt(mean); ++k) {
+            exact += term;
+            term *= mean / (k + 1);
+            const double drawn = distributionAt(mean, k);
+            worst = std::max(worst, std::abs(drawn - exact));
+            sum += k * (drawn - before);
+            squares += (k - mean) * (k - mean) * (drawn - before);
+            before = drawn;
+        }
+        EXPECT_LT(worst, worstBefore) << mean;
+        EXPECT_NEAR(sum / mean, 1, 1e-4) << mean;
+        EXPECT_NEAR(squares / mean, 1, 1e-4) << mean;
+        worstBefore = worst;
+    }
+}
+
+TEST(Random, PoissonBelowTenIsExact) {
+    for (double mean : {1e-12, 1e-3, 0.7, 1.0, 1.3, 9.99}) {
+        double term = std::exp(-mean), exact = 0;
+        for (double k = 0; k < 40; ++k) {
+            exact += term;
+            term *= mean / (k + 1);
+            EXPECT_NEAR(distributionAt(mean, k), exact, 1e-14) << mean << ' ' << k;
+        }
+    }
+}
+
+TEST(Random, PoissonOfAHugeMeanIsTheMean) {
+    for (double mean : {1e16, 1e19, 1e300}) EXPECT_NEAR(poisson(mean, 0.3) / mean, 1, 1e-8);
+    EXPECT_EQ(poisson(0, 1 - 0x1p-53), 0);
 }
 
 TEST(Random, IsAPureFunctionOfKeyAndCounter) {

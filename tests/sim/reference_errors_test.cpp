@@ -56,6 +56,24 @@ TEST(ReferenceErrors, FieldHasUnitVarianceEverywhere) {
     }
 }
 
+TEST(WhiteErrors, MatchesReference) {
+    for (const ReferenceErrors& errors :
+         {ReferenceErrors(), ReferenceErrors::random(11), ReferenceErrors::stratified(4, 11)}) {
+        for (int led : {0, 3}) {
+            const WhiteErrors table = errors.white(led);
+            for (double theta = 0; theta <= 90; theta += 4.3) {
+                for (double phi = 0; phi < 360; phi += 22.5) {
+                    const Direction wo = Direction::fromSpherical(Radians::fromDegrees(theta),
+                                                                  Radians::fromDegrees(phi));
+                    const LedBands factor = table.factor(wo);
+                    // The same terms in another order: a few ulp of 1.
+                    for (Band b : kBands) EXPECT_NEAR(factor[b], errors.white(led, b, wo), 1e-14);
+                }
+            }
+        }
+    }
+}
+
 TEST(ReferenceErrors, ReadsItsThreeWords) {
     EXPECT_TRUE(ReferenceErrors::parse("none", 1));
     EXPECT_TRUE(ReferenceErrors::parse("random", 1));

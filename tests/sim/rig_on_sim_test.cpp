@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <memory>
+
 #include "driver/rig.h"
 #include "proc/models/spec.h"
 #include "sim/in_process.h"
@@ -133,6 +136,42 @@ TEST(RigOnSim, RefusesAWindowOffTheGrid) {
     const auto refused = rig->configure({.x = 129, .y = 0, .size = {1024, 1024}, .binning = 1});
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().deviceStatus, driver::status::kBadArg);
+}
+
+/// A matt grey that counts how often it is asked.
+class Counted : public Scatterer {
+public:
+    Answer answer(const LightView&) const override {
+        ++asked;
+        return {.f = LedBands::all(0.1)};
+    }
+    mutable std::atomic<int> asked = 0;
+};
+
+TEST(RigOnSim, LooksAtASurfaceOncePerLedAndWindow) {
+    sim::InProcessDoor door({});
+    const auto surface = std::make_shared<const Counted>();
+    door.device().place({.role = sim::Role::Sample, .surface = surface, .wedge = {}});
+    auto rig = driver::Rig::open(door, kSession);
+    ASSERT_TRUE(rig);
+    std::uint64_t step = 1;
+    const auto asked = [&](int led, Band band) {
+        EXPECT_TRUE(rig->capture({.planStep = step++,
+                                  .led = led,
+                                  .levels = LedLevels::only(band, 65535),
+                                  .exposure = Microseconds(100),
+                                  .frames = 1}));
+        return surface->asked.exchange(0);
+    };
+    ASSERT_TRUE(rig->configure(kWindow));
+    EXPECT_GT(asked(0, Band::R), 500'000);  // the field of view, once for all bands
+    EXPECT_EQ(asked(0, Band::G), 0);
+    EXPECT_GT(asked(1, Band::G), 500'000);
+    ASSERT_TRUE(rig->configure(kWindow));
+    EXPECT_EQ(asked(0, Band::B), 0);
+    EXPECT_EQ(asked(1, Band::B), 0);
+    ASSERT_TRUE(rig->configure({.x = 640, .y = 512, .size = {16, 8}, .binning = 1}));
+    EXPECT_EQ(asked(0, Band::B), 16 * 8);
 }
 
 TEST(RigOnSim, BinnedWindowIsFourTimesSmaller) {
