@@ -7,6 +7,7 @@
 
 #include "proc/core/parallel.h"
 #include "proc/radiance/exposure_groups.h"
+#include "proc/radiance/saturation.h"
 
 namespace gonio::proc {
 namespace {
@@ -17,6 +18,7 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 struct RowSums {
     std::vector<double> dn;  ///< dark subtracted
     std::vector<int> count;
+    std::vector<std::uint8_t> usable;  ///< of the frame at hand
 };
 
 /// What does not depend on the pixel, worked out once.
@@ -37,7 +39,7 @@ public:
     Merger(const std::vector<ExposureGroup>& groups, const SensorNoise& noise, MergedState& out)
         : groups_(groups),
           k_(noise.electronsPerDn),
-          saturationDn_(noise.saturationDn()),
+          noise_(noise),
           members_(out.window.binning * out.window.binning),
           out_(out) {
         for (const ExposureGroup& group : groups) {
@@ -53,7 +55,9 @@ public:
     Tally rows(IndexRange range) const {
         const auto width = static_cast<std::size_t>(out_.radiance.width());
         std::vector<RowSums> sums(groups_.size(),
-                                  {std::vector<double>(width), std::vector<int>(width)});
+                                  {std::vector<double>(width),
+                                   std::vector<int>(width),
+                                   std::vector<std::uint8_t>(width)});
         Tally tally;
         for (std::size_t y = range.begin; y < range.end; ++y) {
             for (std::size_t g = 0; g < groups_.size(); ++g)
@@ -70,11 +74,11 @@ private:
         const auto dark = group.dark->mean.row(y);
         for (const Frame* frame : group.frames) {
             const auto row = frame->pixels.row(y);
+            markUsable(frame->pixels, y, noise_, sums.usable);
             for (std::size_t x = 0; x < row.size(); ++x) {
-                const double dn = row[x];
-                const bool usable = dn < saturationDn_;
-                sums.dn[x] += usable ? dn - static_cast<double>(dark[x]) : 0.0;
-                sums.count[x] += usable ? 1 : 0;
+                const int usable = sums.usable[x];
+                sums.dn[x] += usable * (row[x] - static_cast<double>(dark[x]));
+                sums.count[x] += usable;
             }
         }
     }
@@ -128,7 +132,7 @@ private:
     std::vector<GroupConstants> constants_;
     std::size_t frames_ = 0;
     double k_;
-    double saturationDn_;
+    const SensorNoise& noise_;
     double members_;  ///< sensor pixels that one pixel is the mean of
     MergedState& out_;
 };

@@ -10,7 +10,7 @@
 // where var of the mean of the n samples of one (exposure, level) is variance(x0 tau, t) / n plus
 // the variance of the dark frame. Weights from the noisy samples themselves would bias dim pixels.
 //
-// Saturation is a hard mask on the sample at 95 % of full scale, never on a prediction. Negative
+// Saturation is a hard mask (saturation.h), never on a prediction from other exposures. Negative
 // samples survive; nothing is clipped. A pixel saturated in every frame has radiance and variance
 // NaN and used = 0. With zero light x is zero on average, of either sign. With one frame x = e /
 // tau.

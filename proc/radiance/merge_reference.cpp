@@ -5,6 +5,7 @@
 
 #include "proc/radiance/exposure_groups.h"
 #include "proc/radiance/merge.h"
+#include "proc/radiance/saturation.h"
 
 namespace gonio::proc {
 namespace {
@@ -87,9 +88,9 @@ Result<MergedState> mergeReference(std::span<const Frame> bracket,
             for (const ExposureGroup& group : *groups) {
                 Samples s{group.tau, group.seconds, group.dark->varianceOfMean * k * k, {}};
                 for (const Frame* frame : group.frames) {
-                    const double dn = frame->pixels.at(x, y);
+                    if (!usableReference(frame->pixels, x, y, noise)) continue;
                     const double dark = static_cast<double>(group.dark->mean.at(x, y));
-                    if (dn < noise.saturationDn()) s.electrons.push_back((dn - dark) * k);
+                    s.electrons.push_back((frame->pixels.at(x, y) - dark) * k);
                 }
                 used += s.electrons.size();
                 samples.push_back(s);

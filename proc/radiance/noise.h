@@ -2,8 +2,8 @@
 // What the sensor adds to the light: the figures that turn DN into electrons and electrons into a
 // variance. A sample of e electrons taken over t seconds has the variance
 //     e + D t + s_r^2 + K^2 / 12
-// (shot noise, dark current's shot noise, read noise, rounding). Full scale ends the range; samples
-// above 95 % of it carry no information about the light.
+// (shot noise, dark current's shot noise, read noise, rounding). Full scale ends the range;
+// saturation.h says which samples near it still tell of the light.
 
 #include <algorithm>
 
@@ -15,8 +15,10 @@ struct SensorNoise {
     double darkElectronsPerSecond = 3.0;  ///< D, at 25 degC
     double fullScaleDn = 4095;            ///< what a saturated pixel reads
 
-    /// Samples at or above this many DN (black level included) are masked.
+    /// Where the surroundings of a sample reach this many DN (black level included) it is masked.
     [[nodiscard]] double saturationDn() const { return 0.95 * fullScaleDn; }
+    /// A sample that reaches this many DN itself is masked.
+    [[nodiscard]] double ceilingDn() const { return 0.985 * fullScaleDn; }
 
     /// Variance in electrons^2 of one pixel that collected `electrons` in `seconds`: never below
     /// that of a dark pixel, as the estimate of a dim light can be negative and its noise cannot.

@@ -78,6 +78,10 @@ TEST(DarkLibrary, FindsByTheGrantedExposureExactly) {
     other = frame;
     other.window.y = 4;
     EXPECT_FALSE(library.find(other));
+    other = frame;
+    other.gainDb = 6;
+    EXPECT_FALSE(library.find(other));
+    EXPECT_EQ(DarkLibrary().find(frame).error().kind, ErrorKind::Quality);
 }
 
 }  // namespace
