@@ -194,7 +194,7 @@ proc::SampleSet calibrateSample(const PlacementSignals& signals,
     proc::SampleSet set;
     Json budgets = Json::array();
     std::vector<double> relative;
-    const auto uAngle = [&](const Direction& wo) { return references.lens.fit.uncertainty(wo); };
+    const proc::DirectionUncertainty uAngle(references.lens.fit);
     for (std::size_t led = 0; led < signals.size(); ++led) {
         proc::LedTable table{.incidence = ledAngles[led], .bands = {}};
         for (Band band : kBands) {

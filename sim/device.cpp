@@ -544,14 +544,14 @@ void Device::beginExposureIfDue() {
 }
 
 const RateImages& Device::rates(int led) {
-    const View& view = format_.view;
-    if (view != ratesView_) rates_.clear();
-    ratesView_ = view;
+    if (!field_ || field_->view() != format_.view) {
+        rates_.clear();
+        field_.emplace(optics_, format_.view);
+    }
     const auto found = rates_.find(led);
     if (found != rates_.end()) return found->second;
-    const ImagePoint corner{static_cast<double>(view.x), static_cast<double>(view.y)};
     return rates_
-        .emplace(led, rateImages(placement_, config_.errors, optics_, view.size, corner, led))
+        .emplace(led, rateImages(placement_, config_.errors, optics_, *field_, led))
         .first->second;
 }
 
@@ -602,7 +602,7 @@ void Device::queueFrame(const Exposing& done, int index) {
     }
     const Nanoseconds exposure = grantedExposure(s.exposureUs);
     const Image<std::uint16_t> image =
-        sensor_.expose(rate, level, exposure, format_.view.size, key, format_.binning);
+        sensor_.expose(rate, level, exposure, format_.view, key, format_.binning);
     const std::vector<std::uint8_t> bytes = packPixels(image, format_.format);
 
     Leader leader;

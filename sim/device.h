@@ -63,12 +63,6 @@ private:
         std::uint16_t gain = 0;
         bool operator==(const Settings&) const = default;
     };
-    /// The part of the sensor that is read.
-    struct View {
-        int x = 0, y = 0;
-        Size size = kSensorSize;
-        bool operator==(const View&) const = default;
-    };
     struct Format {
         driver::PixelFormat format = driver::PixelFormat::Mono12Packed;
         View view;
@@ -134,8 +128,8 @@ private:
     Optics optics_;
     Sensor sensor_;
     Placement placement_;
-    std::map<int, RateImages> rates_;  // per LED, of the placement and of ratesView_
-    View ratesView_;
+    std::optional<FieldOfView> field_;  // of the view that was last looked at
+    std::map<int, RateImages> rates_;   // per LED, of the placement and of field_
 
     Nanoseconds now_{0};
     std::uint32_t bootId_;

@@ -50,7 +50,7 @@ double Sensor::response(std::uint64_t pixel) const {
 Image<std::uint16_t> Sensor::expose(const Image<float>* rate,
                                     double level,
                                     Nanoseconds exposure,
-                                    Size size,
+                                    const View& view,
                                     const NoiseKey& key,
                                     int binning) const {
     const double seconds = static_cast<double>(exposure.count()) * 1e-9;
@@ -58,14 +58,17 @@ Image<std::uint16_t> Sensor::expose(const Image<float>* rate,
     const std::uint64_t shotKey = mixed(mixed(mixed(key.seed, key.planStep), key.frameIndex), 1);
     const std::uint64_t readKey = mixed(shotKey, 2);
     const double gain = level * seconds;
-    Image<std::uint16_t> full(size);
-    parallelFor(static_cast<std::size_t>(size.height), [&](IndexRange rows) {
+    Image<std::uint16_t> full(view.size);
+    parallelFor(static_cast<std::size_t>(view.size.height), [&](IndexRange rows) {
         for (std::size_t y = rows.begin; y < rows.end; ++y) {
             const int row = static_cast<int>(y);
-            const auto response = response_.row(row);
             const auto out = full.row(row);
+            const auto left = static_cast<std::size_t>(view.x);
+            const auto response = response_.row(view.y + row).subspan(left, out.size());
+            const auto sensorRow = static_cast<std::uint64_t>(view.y + row);
+            const std::uint64_t firstPixel = sensorRow * response_.row(0).size() + left;
             for (std::size_t x = 0; x < out.size(); ++x) {
-                const std::uint64_t pixel = y * static_cast<std::uint64_t>(kSensorSize.width) + x;
+                const std::uint64_t pixel = firstPixel + x;
                 const double light =
                     rate == nullptr ? 0 : double{rate->row(row)[x]} * gain * double{response[x]};
                 const double electrons =
@@ -76,7 +79,7 @@ Image<std::uint16_t> Sensor::expose(const Image<float>* rate,
         }
     });
     if (binning == 1) return full;
-    Image<std::uint16_t> binned({size.width / binning, size.height / binning});
+    Image<std::uint16_t> binned({view.size.width / binning, view.size.height / binning});
     for (int y = 0; y < binned.height(); ++y) {
         for (int x = 0; x < binned.width(); ++x) {
             int sum = 0;

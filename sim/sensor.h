@@ -21,6 +21,13 @@ inline constexpr std::uint16_t kExposureStep = 550;  ///< 0.01 us: one line
 /// The effective exposure that the sensor gives for a request: whole lines plus a fixed 14.26 us.
 [[nodiscard]] Nanoseconds grantedExposure(std::uint32_t requestedUs);
 
+/// The part of the sensor that is read, in sensor pixels.
+struct View {
+    int x = 0, y = 0;
+    Size size = kSensorSize;
+    bool operator==(const View&) const = default;
+};
+
 struct NoiseKey {
     std::uint64_t seed = 0;
     std::uint64_t planStep = 0;
@@ -31,22 +38,21 @@ class Sensor {
 public:
     explicit Sensor(const std::string& serial);
 
-    /// One exposure of the pixels whose light is `rate` times `level` in electrons per second;
-    /// `corner` is the first pixel's place on the sensor. Empty rate: dark. Binned as the protocol
-    /// says.
+    /// One exposure of the view's pixels, whose light is `rate` times `level` in electrons per
+    /// second. No rate: dark. Binned as the protocol says.
     [[nodiscard]] Image<std::uint16_t> expose(const Image<float>* rate,
                                               double level,
                                               Nanoseconds exposure,
-                                              Size size,
+                                              const View& view,
                                               const NoiseKey& key,
                                               int binning) const;
 
-    /// Gain of the pixel relative to the mean: 1 +- 0.7 %.
+    /// Gain of a pixel of the sensor relative to the mean: 1 +- 0.7 %.
     [[nodiscard]] double response(std::uint64_t pixel) const;
 
 private:
     std::uint64_t key_;
-    Image<float> response_;  // of the largest window that the rig reads
+    Image<float> response_;  // of the whole sensor
 };
 
 }  // namespace gonio::sim

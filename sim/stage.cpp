@@ -55,8 +55,8 @@ double mirrorLight(const Optics& optics,
                    ImagePoint corner,
                    const Direction& wo,
                    const Direction& image) {
-    const double away = angleBetween({image, wo}).value();
-    if (away > 2 * kSourceRadius) return 0;
+    static const double nearby = std::cos(2 * kSourceRadius);
+    if (wo.vector().dot(image.vector()) < nearby) return 0;
     // f cos(theta_o) = reflectance / solid angle of the source.
     const double peak = kMirrorReflectance / (kPi * kSourceRadius * kSourceRadius);
     return peak * discShare(optics, corner, image);
@@ -73,29 +73,46 @@ Direction mirrored(const Direction& light, const Wedge& wedge) {
     return *Direction::fromVector(2 * normal.dot(wi) * normal - wi);
 }
 
+FieldOfView::FieldOfView(const Optics& optics, const View& view)
+    : view_(view), directions_(view.size), transmission_(view.size) {
+    parallelFor(static_cast<std::size_t>(view.size.height), [&](IndexRange rows) {
+        for (std::size_t row = rows.begin; row < rows.end; ++row) {
+            const int y = static_cast<int>(row);
+            for (int x = 0; x < view.size.width; ++x) {
+                const auto wo = optics.directionAt({view.x + x + 0.5, view.y + y + 0.5});
+                if (!wo) continue;
+                directions_.at(x, y) = *wo;
+                transmission_.at(x, y) =
+                    static_cast<float>(optics.relativeSolidAngle(*wo) * optics.vignetting(*wo));
+            }
+        }
+    });
+}
+
 RateImages rateImages(const Placement& placement,
                       const ReferenceErrors& errors,
                       const Optics& optics,
-                      Size size,
-                      ImagePoint corner,
+                      const FieldOfView& field,
                       int led) {
-    RateImages images{Image<float>(size), Image<float>(size), Image<float>(size)};
+    const View& view = field.view();
+    RateImages images{Image<float>(view.size), Image<float>(view.size), Image<float>(view.size)};
     const Direction image = mirrored(ledDirection(led), placement.wedge);
     const SurfaceErrors surfaceErrors(placement, errors, led);
-    parallelFor(static_cast<std::size_t>(size.height), [&](IndexRange rows) {
+    parallelFor(static_cast<std::size_t>(view.size.height), [&](IndexRange rows) {
         for (std::size_t row = rows.begin; row < rows.end; ++row) {
-            for (int x = 0; x < size.width; ++x) {
-                const ImagePoint pixel{corner.x + x, corner.y + static_cast<double>(row)};
-                const auto wo = optics.directionAt({pixel.x + 0.5, pixel.y + 0.5});
-                if (!wo) continue;
-                LedBands light = surfaceLight(placement, surfaceErrors, led, *wo);
+            const int y = static_cast<int>(row);
+            for (int x = 0; x < view.size.width; ++x) {
+                const double lens = field.transmission(x, y);
+                if (lens == 0) continue;
+                const Direction& wo = field.direction(x, y);
+                LedBands light = surfaceLight(placement, surfaceErrors, led, wo);
                 if (placement.role == Role::Mirror) {
-                    light = LedBands::all(mirrorLight(optics, pixel, *wo, image));
+                    const ImagePoint corner{double(view.x + x), double(view.y + y)};
+                    light = LedBands::all(mirrorLight(optics, corner, wo, image));
                 }
-                const double stray = strayLight(led, *wo);
-                const double lens = optics.relativeSolidAngle(*wo) * optics.vignetting(*wo);
+                const double stray = strayLight(led, wo);
                 for (Band b : kBands) {
-                    images[index(b)].at(x, static_cast<int>(row)) =
+                    images[index(b)].at(x, y) =
                         static_cast<float>(ledRate(led, b) * lens * (light[b] + stray));
                 }
             }

@@ -15,28 +15,31 @@ constexpr double kWorstDegrees = 0.5;
 constexpr std::array<double, LensMap::kParameters> kSteps{
     1e-3, 1e-3, 2e-6, 2e-6, 2e-6, 2e-6, 2e-6, 2e-6};
 
-/// The angle between two directions, as a vector in the plane between them.
-Eigen::Vector3d difference(const Direction& a, const Direction& b) {
-    return a.vector() - b.vector();
-}
-
 }  // namespace
 
-Radians LensFit::uncertainty(const Direction& wo) const {
-    const SensorPoint at = map.pointOf(wo);
-    Eigen::Matrix<double, 3, LensMap::kParameters> slopes;
+DirectionUncertainty::DirectionUncertainty(const LensFit& fit)
+    : map_(fit.map), covariance_(fit.covariance) {
     for (std::size_t i = 0; i < LensMap::kParameters; ++i) {
-        auto up = map.values();
-        auto down = map.values();
+        auto up = map_.values();
+        auto down = map_.values();
         up[i] += kSteps[i];
         down[i] -= kSteps[i];
-        const auto higher = LensMap::fromValues(up).directionAt(at);
-        const auto lower = LensMap::fromValues(down).directionAt(at);
+        slopes_.push_back({LensMap::fromValues(up), LensMap::fromValues(down), 2 * kSteps[i]});
+    }
+}
+
+Radians DirectionUncertainty::operator()(const Direction& wo) const {
+    const SensorPoint at = map_.pointOf(wo);
+    Eigen::Matrix<double, 3, LensMap::kParameters> slopes;
+    for (std::size_t i = 0; i < LensMap::kParameters; ++i) {
+        const auto higher = slopes_[i].higher.directionAt(at);
+        const auto lower = slopes_[i].lower.directionAt(at);
         if (!higher || !lower) return Radians(kPi);
-        slopes.col(static_cast<Eigen::Index>(i)) = difference(*higher, *lower) / (2 * kSteps[i]);
+        slopes.col(static_cast<Eigen::Index>(i)) =
+            (higher->vector() - lower->vector()) / slopes_[i].width;
     }
     // The trace is the sum of both tangential variances.
-    return Radians(std::sqrt(0.5 * (slopes * covariance * slopes.transpose()).trace()));
+    return Radians(std::sqrt(0.5 * (slopes * covariance_ * slopes.transpose()).trace()));
 }
 
 Result<LensFit> fitLens(std::span<const MirrorSpot> spots,

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <span>
+#include <vector>
 
 #include "proc/core/result.h"
 #include "proc/optics/lens_map.h"
@@ -20,9 +21,23 @@ struct LensFit {
     Eigen::MatrixXd covariance;  ///< of LensMap::values(), widened where the spots scatter more
     double rmsPixels = 0;        ///< distance of the spots from the map
     double worstPixels = 0;
+};
 
-    /// Standard uncertainty of the direction that the map gives where wo falls, per axis.
-    [[nodiscard]] Radians uncertainty(const Direction& wo) const;
+/// Standard uncertainty of the direction that a fitted map gives where wo falls, per axis: the
+/// covariance through numerical slopes. Half a turn where the map gives none.
+class DirectionUncertainty {
+public:
+    explicit DirectionUncertainty(const LensFit& fit);
+    [[nodiscard]] Radians operator()(const Direction& wo) const;
+
+private:
+    struct Slope {
+        LensMap higher, lower;  // with one parameter moved
+        double width = 0;
+    };
+    LensMap map_;
+    std::vector<Slope> slopes_;  // by parameter
+    Eigen::MatrixXd covariance_;
 };
 
 /// Starts from an even f-theta lens about `middle`. Quality error when the spots leave the map

@@ -154,5 +154,14 @@ TEST(Binning, APictureThatCutsTheFieldBlocksWhatItCuts) {
     EXPECT_TRUE(out.flags[left].has(Flag::Blocked));
 }
 
+TEST(CellSignal, MissingIsNeverZero) {
+    const CellSignal missing = CellSignal::missing(2);
+    ASSERT_EQ(missing.size(), 2U);
+    for (std::size_t cell = 0; cell < 2; ++cell) {
+        EXPECT_FALSE(missing.present(cell));
+        EXPECT_TRUE(std::isnan(missing.signal[cell]) && std::isnan(missing.variance[cell]));
+    }
+}
+
 }  // namespace
 }  // namespace gonio::proc

@@ -57,7 +57,7 @@ TEST(LensFit, KnowsHowWrongItMayBe) {
             ASSERT_TRUE(fit);
             const auto seen = fit->map.directionAt(truth.pointOf(wo));
             const double error = angleBetween({wo, *seen}).value();
-            sum += 0.5 * std::pow(error / fit->uncertainty(wo).value(), 2);
+            sum += 0.5 * std::pow(error / DirectionUncertainty(*fit)(wo).value(), 2);
         }
         // Birge only widens, so the mean lies a little below 1.
         EXPECT_GT(sum / kFits, 0.6) << theta;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace gonio::sim {
@@ -109,6 +110,19 @@ TEST(Random, IsAPureFunctionOfKeyAndCounter) {
     EXPECT_EQ(uniform(3, 4), uniform(3, 4));
     EXPECT_NE(uniform(3, 4), uniform(3, 5));
     EXPECT_NE(mixed(1, 2), mixed(2, 1));
+}
+
+TEST(Random, UniformFillsTheOpenIntervalEvenly) {
+    constexpr int kCells = 20, kCount = 200'000;
+    std::array<int, kCells> seen{};
+    for (std::uint64_t i = 0; i < kCount; ++i) {
+        const double u = uniform(12, i);
+        ASSERT_TRUE(u > 0 && u < 1);
+        ++seen[static_cast<std::size_t>(u * kCells)];
+    }
+    // Binomial: sigma = sqrt(n p (1 - p)).
+    const double sigma = std::sqrt(kCount * 0.05 * 0.95);
+    for (int count : seen) EXPECT_NEAR(count, kCount / kCells, 5 * sigma);
 }
 
 }  // namespace

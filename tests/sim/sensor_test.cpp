@@ -19,7 +19,7 @@ TEST(Sensor, SameKeySameFrameAnotherStepAnotherFrame) {
     const Sensor sensor("SIM-0001");
     const Image<float> rate(kSmall, 1e6F);
     const auto frame = [&](NoiseKey key) {
-        return sensor.expose(&rate, 1, Nanoseconds(1'000'000), kSmall, key, 1);
+        return sensor.expose(&rate, 1, Nanoseconds(1'000'000), {.size = kSmall}, key, 1);
     };
     EXPECT_EQ(frame({1, 2, 0}), frame({1, 2, 0}));
     EXPECT_NE(frame({1, 2, 0}), frame({1, 3, 0}));
@@ -32,8 +32,10 @@ TEST(Sensor, PhotonTransferGivesGainAndReadNoise) {
     const Sensor sensor("SIM-0001");
     const auto pair = [&](float electrons, double& mean, double& variance) {
         const Image<float> rate(kSmall, electrons * 1e3F);
-        const auto a = sensor.expose(&rate, 1, Nanoseconds(1'000'000), kSmall, {1, 1, 0}, 1);
-        const auto b = sensor.expose(&rate, 1, Nanoseconds(1'000'000), kSmall, {1, 1, 1}, 1);
+        const auto a =
+            sensor.expose(&rate, 1, Nanoseconds(1'000'000), {.size = kSmall}, {1, 1, 0}, 1);
+        const auto b =
+            sensor.expose(&rate, 1, Nanoseconds(1'000'000), {.size = kSmall}, {1, 1, 1}, 1);
         double sum = 0, squares = 0;
         const auto n = static_cast<double>(a.pixels().size());
         for (std::size_t i = 0; i < a.pixels().size(); ++i) {
@@ -56,15 +58,18 @@ TEST(Sensor, PhotonTransferGivesGainAndReadNoise) {
 TEST(Sensor, SaturatesAtFullScale) {
     const Sensor sensor("SIM-0001");
     const Image<float> rate({8, 8}, 1e9F);
-    const auto frame = sensor.expose(&rate, 1, Nanoseconds(1'000'000), {8, 8}, {1, 1, 0}, 1);
+    const auto frame =
+        sensor.expose(&rate, 1, Nanoseconds(1'000'000), {.size = {8, 8}}, {1, 1, 0}, 1);
     EXPECT_GE(frame.at(3, 3), kFullScale - 8);
 }
 
 TEST(Sensor, BinnedPixelIsTheMeanUnlessOneIsSaturated) {
     const Sensor sensor("SIM-0001");
     Image<float> rate({4, 4}, 1e6F);
-    const auto full = sensor.expose(&rate, 1, Nanoseconds(1'000'000), {4, 4}, {1, 1, 0}, 1);
-    const auto binned = sensor.expose(&rate, 1, Nanoseconds(1'000'000), {4, 4}, {1, 1, 0}, 2);
+    const auto full =
+        sensor.expose(&rate, 1, Nanoseconds(1'000'000), {.size = {4, 4}}, {1, 1, 0}, 1);
+    const auto binned =
+        sensor.expose(&rate, 1, Nanoseconds(1'000'000), {.size = {4, 4}}, {1, 1, 0}, 2);
     const int sum = full.at(0, 0) + full.at(1, 0) + full.at(0, 1) + full.at(1, 1);
     EXPECT_EQ(binned.size(), (Size{2, 2}));
     EXPECT_EQ(binned.at(0, 0), (sum + 2) / 4);
@@ -76,6 +81,22 @@ TEST(Sensor, ResponsesScatterBySevenTenthsOfAPerCent) {
     constexpr int kPixels = 20000;
     for (std::uint64_t i = 0; i < kPixels; ++i) squares += std::pow(sensor.response(i) - 1, 2);
     EXPECT_NEAR(std::sqrt(squares / kPixels), 0.007, 0.0002);
+}
+
+TEST(Sensor, PixelsKeepTheirResponseInEveryView) {
+    const Sensor sensor("SIM-0001");
+    constexpr Size kWhole = kSensorSize;
+    constexpr View kPart{.x = 640, .y = 512, .size = {64, 32}};
+    const Image<float> bright(kWhole, 5e6F);
+    const Image<float> brightPart(kPart.size, 5e6F);
+    constexpr Nanoseconds kExposure(1'000'000);
+    const auto whole = sensor.expose(&bright, 1, kExposure, {}, {1, 1, 0}, 1);
+    const auto part = sensor.expose(&brightPart, 1, kExposure, kPart, {1, 1, 0}, 1);
+    for (int y = 0; y < kPart.size.height; ++y) {
+        for (int x = 0; x < kPart.size.width; ++x) {
+            ASSERT_EQ(part.at(x, y), whole.at(kPart.x + x, kPart.y + y)) << x << ' ' << y;
+        }
+    }
 }
 
 }  // namespace

@@ -1,0 +1,179 @@
+#include "sim/device.h"
+
+#include <gtest/gtest.h>
+
+namespace gonio::sim {
+namespace {
+
+using namespace driver;
+
+constexpr std::uint64_t kSession = 0x1122334455667788;
+
+/// The device's own answers: everything that waits in its input queue.
+std::vector<Report> inputsOf(Device& device) {
+    std::vector<Report> all;
+    while (const auto report = device.takeInput()) all.push_back(*report);
+    return all;
+}
+
+/// Sends a command; its ACK.
+Ack answerTo(Device& device, Command command) {
+    command.sessionLow = static_cast<std::uint32_t>(kSession);
+    inputsOf(device);
+    device.output(encode(command));
+    for (const Report& report : inputsOf(device)) {
+        if (const auto ack = decodeAck(report)) return *ack;
+    }
+    ADD_FAILURE() << "no ACK";
+    return {};
+}
+
+SessionState sessionOf(Device& device) {
+    return decodeSessionState(*device.getFeature(static_cast<std::uint8_t>(ReportId::Session)))
+        .value();
+}
+
+void claim(Device& device, std::uint64_t id = kSession) {
+    EXPECT_TRUE(device.setFeature(encode(SessionSet{.sessionId = id})));
+}
+
+TEST(Device, AnswersEveryFeatureOfTheTableAndStallsOnOthers) {
+    Device device({});
+    for (int id = 0; id < 256; ++id) {
+        const auto report = device.getFeature(static_cast<std::uint8_t>(id));
+        const bool known = (id >= 0x01 && id <= 0x06) || id == 0x10;
+        EXPECT_EQ(report.has_value(), known) << id;
+        if (!report) continue;
+        EXPECT_EQ((*report)[0], id);
+        EXPECT_TRUE(crcAgrees(*report));
+    }
+}
+
+TEST(Device, BootIdDiffersFromBootToBoot) {
+    const auto bootOf = [](DeviceConfig config) {
+        Device device(std::move(config));
+        return decodeIdent(*device.getFeature(static_cast<std::uint8_t>(ReportId::Ident)))->bootId;
+    };
+    EXPECT_EQ(bootOf({.bootCount = 1, .errors = {}}), bootOf({.bootCount = 1, .errors = {}}));
+    EXPECT_NE(bootOf({.bootCount = 1, .errors = {}}), bootOf({.bootCount = 2, .errors = {}}));
+}
+
+TEST(Device, CommandsWithoutAClaimAreRefused) {
+    Device device({});
+    EXPECT_EQ(answerTo(device, {.sequence = 1}).status, status::kNotOwner);
+    claim(device);
+    EXPECT_EQ(answerTo(device, {.sequence = 1}).status, status::kOk);
+}
+
+TEST(Device, ARepeatedCommandIsAnsweredAgainAndDoneOnce) {
+    Device device({});
+    claim(device);
+    const Command ping{.sequence = 1};
+    const Ack first = answerTo(device, ping);
+    device.advanceTo(device.now() + std::chrono::milliseconds(7));
+    EXPECT_EQ(answerTo(device, ping), first);  // the time of then, not of now
+    EXPECT_EQ(device.stats().replays, 1U);
+    // The same number for something else, number 0, and one that is behind.
+    EXPECT_EQ(answerTo(device, {.sequence = 1, .op = Op::Flush}).status, status::kBadSeq);
+    EXPECT_EQ(answerTo(device, {.sequence = 0}).status, status::kBadSeq);
+    EXPECT_EQ(answerTo(device, {.sequence = 65535}).status, status::kBadSeq);
+    EXPECT_EQ(answerTo(device, {.sequence = 2}).status, status::kOk);
+}
+
+TEST(Device, ATornReportIsCountedAndNothingElse) {
+    Device device({});
+    claim(device);
+    inputsOf(device);
+    Report torn =
+        encode(Command{.sessionLow = static_cast<std::uint32_t>(kSession), .sequence = 1});
+    torn[20] ^= 1;
+    device.output(torn);
+    EXPECT_FALSE(device.takeInput());
+    EXPECT_EQ(device.stats().crcRejects, 1U);
+    Report claimTorn = encode(SessionSet{.sessionId = 99});
+    claimTorn[20] ^= 1;
+    EXPECT_TRUE(device.setFeature(claimTorn));  // no stall: it is told in the state
+    EXPECT_EQ(sessionOf(device).statusOfLastSet, status::kBadCrc);
+    EXPECT_EQ(sessionOf(device).sessionId, kSession);
+}
+
+TEST(Device, TheOwnerKeepsItsClaimUntilItGivesItBack) {
+    Device device({});
+    claim(device);
+    claim(device, kSession + 1);
+    EXPECT_EQ(sessionOf(device).statusOfLastSet, status::kBusy);
+    device.setFeature(encode(SessionSet{.sessionId = kSession + 1, .release = true}));
+    EXPECT_EQ(sessionOf(device).statusOfLastSet, status::kNotOwner);
+    device.setFeature(encode(SessionSet{.sessionId = kSession, .release = true}));
+    EXPECT_EQ(sessionOf(device).owner, Owner::None);
+    claim(device, kSession + 1);
+    EXPECT_EQ(sessionOf(device).sessionId, kSession + 1);
+}
+
+TEST(Device, ClaimsOutOfTheirDomainAreRefused) {
+    for (const SessionSet& bad : {SessionSet{.sessionId = 0},
+                                  SessionSet{.sessionId = 1ULL << 32},  // low half 0
+                                  SessionSet{.sessionId = 1, .heartbeatMs = 499},
+                                  SessionSet{.sessionId = 1, .heartbeatMs = 10001}}) {
+        Device device({});
+        EXPECT_TRUE(device.setFeature(encode(bad)));
+        EXPECT_EQ(sessionOf(device).statusOfLastSet, status::kBadArg);
+        EXPECT_EQ(sessionOf(device).owner, Owner::None);
+    }
+    for (const std::uint16_t edge : {std::uint16_t{500}, std::uint16_t{10000}}) {
+        Device device({});
+        device.setFeature(encode(SessionSet{.sessionId = 1, .heartbeatMs = edge}));
+        EXPECT_EQ(sessionOf(device).owner, Owner::Alive);
+    }
+}
+
+TEST(Device, TheHeartbeatLapsesAtItsTimeAndNotBefore) {
+    Device device({});
+    device.setFeature(encode(SessionSet{.sessionId = kSession, .heartbeatMs = 500}));
+    device.advanceTo(std::chrono::milliseconds(500) - Nanoseconds(1));
+    EXPECT_EQ(sessionOf(device).owner, Owner::Alive);
+    device.advanceTo(std::chrono::milliseconds(500));
+    EXPECT_EQ(sessionOf(device).owner, Owner::Lapsed);
+    EXPECT_EQ(device.stats().lapses, 1U);
+}
+
+TEST(Device, TimeGoesToWhereItIsSentAndTheNextEventIsNeverBehind) {
+    Device device({});
+    for (int ms : {1, 99, 100, 101, 1000}) {
+        device.advanceTo(std::chrono::milliseconds(ms));
+        EXPECT_EQ(device.now(), std::chrono::milliseconds(ms));
+        EXPECT_GE(device.nextEvent(), device.now());
+    }
+    device.advanceTo(Nanoseconds(0));
+    EXPECT_EQ(device.now(), std::chrono::milliseconds(1000));  // never back
+}
+
+TEST(Device, EventsAreKeptForReadingAgain) {
+    Device device({});
+    claim(device);
+    device.setInterlock(0);
+    device.setInterlock(interlock::kMayLight);
+    const auto page =
+        decodeEventsPage(*device.getFeature(static_cast<std::uint8_t>(ReportId::Events)));
+    ASSERT_TRUE(page);
+    EXPECT_EQ(page->oldest, 1U);
+    EXPECT_EQ(page->newest, 4U);
+    ASSERT_EQ(page->events.size(), 2U);  // a page holds two
+    EXPECT_EQ(page->events[0].code, event::kBoot);
+    device.setFeature(encodeEventsFrom(3));
+    const auto rest =
+        decodeEventsPage(*device.getFeature(static_cast<std::uint8_t>(ReportId::Events)));
+    ASSERT_EQ(rest->events.size(), 2U);
+    EXPECT_EQ(rest->events[0].code, event::kInterlockOpened);
+    EXPECT_EQ(rest->events[1].code, event::kInterlockClosed);
+}
+
+TEST(Device, AResetStreamHoldsNothing) {
+    Device device({});
+    EXPECT_FALSE(device.takeBulk());
+    device.resetStream();
+    EXPECT_FALSE(device.takeBulk());
+}
+
+}  // namespace
+}  // namespace gonio::sim
