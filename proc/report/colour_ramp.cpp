@@ -10,6 +10,9 @@ namespace {
 
 using Rgb = std::array<double, 3>;
 
+/// Into [0, 1]; NaN becomes 0.
+double clamped(double t) { return std::fmin(std::fmax(t, 0.0), 1.0); }
+
 // Anchors of equal lightness step (CIE L* 15 to 91), hue from blue-violet to yellow.
 constexpr std::array<Rgb, 9> kAnchors{{{68, 1, 84},
                                        {71, 44, 122},
@@ -24,7 +27,7 @@ constexpr std::array<Rgb, 9> kAnchors{{{68, 1, 84},
 }  // namespace
 
 std::string rampColour(double t) {
-    const double at = std::clamp(t, 0.0, 1.0) * static_cast<double>(kAnchors.size() - 1);
+    const double at = clamped(t) * static_cast<double>(kAnchors.size() - 1);
     const std::size_t left = std::min(static_cast<std::size_t>(at), kAnchors.size() - 2);
     const double blend = at - static_cast<double>(left);
     constexpr std::string_view kHex = "0123456789abcdef";
@@ -48,8 +51,9 @@ LogAxis LogAxis::covering(double lowest, double highest) {
 }
 
 double LogAxis::position(double value) const {
+    if (!(value > 0)) return 0;
     const double t = (std::log10(value) - firstDecade) / (lastDecade - firstDecade);
-    return std::clamp(t, 0.0, 1.0);
+    return clamped(t);
 }
 
 }  // namespace gonio::proc

@@ -6,16 +6,18 @@
 
 namespace gonio::proc {
 
-/// "#rrggbb" at position t, clamped to [0, 1].
+/// "#rrggbb" at position t, clamped to [0, 1]; NaN as 0.
 [[nodiscard]] std::string rampColour(double t);
 
-/// A decade axis that holds [lowest, highest]; both positive.
+/// A logarithmic axis of whole decades.
 struct LogAxis {
     int firstDecade = -3;
     int lastDecade = 0;
 
+    /// The fewest decades that hold [lowest, highest], at least one; of more than eight, the upper
+    /// eight. Both positive and finite.
     [[nodiscard]] static LogAxis covering(double lowest, double highest);
-    /// 0 at the first decade, 1 at the last, clamped; value > 0.
+    /// 0 at the first decade, 1 at the last, clamped; 0 and below lie at 0.
     [[nodiscard]] double position(double value) const;
 };
 

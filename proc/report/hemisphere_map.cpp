@@ -14,17 +14,17 @@
 namespace gonio::proc {
 namespace {
 
-constexpr int kRaster = 181;    // pixels across: one degree each
+constexpr int kRaster = 181;    // pixels across: one degree and one user unit each
 constexpr int kShades = 64;     // colours told apart; runs of one colour are one stroke
+constexpr int kNoData = 64;     // the shade behind them
+constexpr int kOutside = -1;    // at or below the horizon
 constexpr double kPanel = 200;  // user units between panel corners
-constexpr double kLeft = 70, kTop = 60, kRight = 90, kBottom = 20;
-constexpr std::string_view kNoData = "#d8d8d8";
+constexpr double kLeft = 70, kTop = 76, kRight = 90, kBottom = 4;
+constexpr std::string_view kGrey = "#d8d8d8";
 
-using Raster = std::vector<std::optional<double>>;  // kRaster x kRaster, empty where unanswered
+using Panel = std::vector<LedBands>;  // kRaster x kRaster, NaN where unanswered
 
-struct Panel {
-    std::array<Raster, 3> bands;
-};
+std::size_t pixel(int column, int row) { return static_cast<std::size_t>(row * kRaster + column); }
 
 std::optional<Direction> directionAt(int column, int row) {
     const double x = column - (kRaster - 1) / 2.0;
@@ -35,35 +35,30 @@ std::optional<Direction> directionAt(int column, int row) {
 }
 
 Panel evaluate(const Scatterer& scatterer, Radians incidence) {
-    Panel panel;
-    for (Raster& raster : panel.bands) raster.resize(std::size_t{kRaster} * kRaster);
+    Panel panel(std::size_t{kRaster} * kRaster,
+                LedBands::all(std::numeric_limits<double>::quiet_NaN()));
     const Direction wi = Direction::fromSpherical(incidence, Radians(0));
-    parallelFor(kRaster, [&](IndexRange rows) {
-        for (std::size_t row = rows.begin; row < rows.end; ++row) {
-            for (int column = 0; column < kRaster; ++column) {
-                const auto wo = directionAt(column, static_cast<int>(row));
-                if (!wo) continue;
-                const Answer answer = scatterer.answer({.in = wi, .out = *wo});
-                for (Band band : kBands) {
-                    if (std::isnan(answer.f[band])) continue;
-                    panel.bands[index(band)][row * kRaster + static_cast<std::size_t>(column)] =
-                        answer.f[band];
-                }
-            }
+    const auto fillRow = [&](int row) {
+        for (int column = 0; column < kRaster; ++column) {
+            if (const auto wo = directionAt(column, row))
+                panel[pixel(column, row)] = scatterer.answer({.in = wi, .out = *wo}).f;
         }
+    };
+    parallelFor(kRaster, [&](IndexRange rows) {
+        for (std::size_t row = rows.begin; row < rows.end; ++row) fillRow(static_cast<int>(row));
     });
     return panel;
 }
 
-LogAxis axisOf(const std::vector<Panel>& panels) {
+LogAxis axisOf(const std::vector<Panel>& panels, std::span<const Band> bands) {
     double lowest = std::numeric_limits<double>::infinity();
     double highest = 0;
     for (const Panel& panel : panels) {
-        for (const Raster& raster : panel.bands) {
-            for (const auto& f : raster) {
-                if (!f || *f <= 0) continue;
-                lowest = std::min(lowest, *f);
-                highest = std::max(highest, *f);
+        for (const LedBands& f : panel) {
+            for (Band band : bands) {
+                if (!std::isfinite(f[band]) || f[band] <= 0) continue;
+                lowest = std::min(lowest, f[band]);
+                highest = std::max(highest, f[band]);
             }
         }
     }
@@ -71,86 +66,109 @@ LogAxis axisOf(const std::vector<Panel>& panels) {
     return LogAxis::covering(std::max(lowest, highest * 1e-6), highest);
 }
 
-void drawRaster(Svg& svg, Point corner, const Raster& raster, const LogAxis& axis) {
-    const double scale = (kPanel - 20) / kRaster;
-    std::array<std::string, kShades + 1> paths;  // the last one: no data
+int shadeOf(double f, const LogAxis& axis) {
+    if (!std::isfinite(f)) return kNoData;
+    return std::min(kShades - 1, static_cast<int>(axis.position(f) * kShades));
+}
+
+std::string colourOf(int shade) {
+    return shade == kNoData ? std::string(kGrey) : rampColour((shade + 0.5) / kShades);
+}
+
+/// One path for each shade: the runs of pixels that have it.
+std::array<std::string, kShades + 1> runsOf(const Panel& panel,
+                                            Band band,
+                                            const LogAxis& axis,
+                                            Point corner) {
+    std::array<std::string, kShades + 1> paths;
+    const auto shadeAt = [&](int column, int row) {
+        if (column == kRaster || !directionAt(column, row)) return kOutside;
+        return shadeOf(panel[pixel(column, row)][band], axis);
+    };
     for (int row = 0; row < kRaster; ++row) {
         int start = 0;
-        int current = -1;
+        int current = kOutside;
         for (int column = 0; column <= kRaster; ++column) {
-            int shade = -1;
-            if (column < kRaster && directionAt(column, row)) {
-                const auto& f = raster[static_cast<std::size_t>(row * kRaster + column)];
-                shade = !f ? kShades
-                        : *f <= 0
-                            ? 0
-                            : std::min(kShades - 1, static_cast<int>(axis.position(*f) * kShades));
-            }
+            const int shade = shadeAt(column, row);
             if (shade == current) continue;
-            if (current >= 0) {
-                paths[static_cast<std::size_t>(current)] +=
-                    "M" + fixed(corner.x + start * scale, 1) + " " +
-                    fixed(corner.y + (row + 0.5) * scale, 1) + "h" +
-                    fixed((column - start) * scale, 1);
+            if (current != kOutside) {
+                paths[static_cast<std::size_t>(current)] += "M" + fixed(corner.x + start, 0) + " " +
+                                                            fixed(corner.y + row + 0.5, 1) + "h" +
+                                                            std::to_string(column - start);
             }
             start = column;
             current = shade;
         }
     }
-    for (std::size_t shade = 0; shade < paths.size(); ++shade) {
-        if (paths[shade].empty()) continue;
-        const std::string colour = shade == kShades
-                                       ? std::string(kNoData)
-                                       : rampColour((static_cast<double>(shade) + 0.5) / kShades);
-        svg.runs(paths[shade], colour);
+    return paths;
+}
+
+void drawRaster(Svg& svg, Point corner, const Panel& panel, Band band, const LogAxis& axis) {
+    const auto paths = runsOf(panel, band, axis, corner);
+    for (int shade = 0; shade <= kNoData; ++shade) {
+        const std::string& path = paths[static_cast<std::size_t>(shade)];
+        if (!path.empty()) svg.runs(path, colourOf(shade));
     }
-    const Point centre{corner.x + (kPanel - 20) / 2, corner.y + (kPanel - 20) / 2};
-    for (double ring : {30.0, 60.0, 90.0}) {
-        svg.circle(centre, ring * scale, {.colour = "#ffffff", .width = 0.5, .dash = "2 3"});
-    }
-    svg.circle(centre, 90.5 * scale, {.colour = "#666", .width = 0.8, .dash = ""});
+}
+
+/// Rings at 30, 60 and 90 degrees, and one about the light.
+void drawRings(Svg& svg, Point corner, Radians incidence) {
+    const Point centre{corner.x + kRaster / 2.0, corner.y + kRaster / 2.0};
+    for (double ring : {30.0, 60.0})
+        svg.circle(centre, ring, {.colour = "#ffffff", .width = 0.6, .dash = "2 3"});
+    svg.circle(centre, kRaster / 2.0, {.colour = "#666", .width = 1, .dash = ""});
+    if (incidence > 90_deg) return;
+    const Point light{centre.x + incidence.degrees(), centre.y};
+    svg.circle(light, 3.5, {.colour = "#ffffff", .width = 2.6, .dash = ""});
+    svg.circle(light, 3.5, {.colour = "#d35400", .width = 1.4, .dash = ""});
 }
 
 void drawScale(Svg& svg, Point corner, double height, const LogAxis& axis) {
+    // Each shade reaches up to the end and the next one lies over it: no seams.
     for (int shade = 0; shade < kShades; ++shade) {
-        const double step = height / kShades;
-        svg.rectangle({corner.x, corner.y + height - (shade + 1) * step},
-                      {14, step + 0.3},
-                      rampColour((shade + 0.5) / kShades));
+        svg.rectangle(corner, {14, height * (kShades - shade) / kShades}, colourOf(shade));
     }
     for (int decade = axis.firstDecade; decade <= axis.lastDecade; ++decade) {
         const double y = corner.y + height * (1 - axis.position(std::pow(10.0, decade)));
         svg.line({corner.x + 14, y}, {corner.x + 18, y}, {});
         svg.text({corner.x + 21, y + 4}, "1e" + std::to_string(decade));
     }
-    svg.text({corner.x - 4, corner.y - 10}, "f, 1/sr");
+    svg.text({corner.x - 4, corner.y - 12}, "f, 1/sr");
+}
+
+void drawHeading(Svg& svg, const PlotRequest& request) {
+    svg.title({kLeft, 24}, request.title);
+    svg.text({kLeft, 41}, "dashed: theta_o 30, 60 deg; ring: the light", Anchor::Start, 10);
 }
 
 }  // namespace
 
 std::string hemisphereMaps(const Scatterer& scatterer, const PlotRequest& request) {
+    const std::span<const Band> bands = shownBands(scatterer);
     std::vector<Panel> panels;
     for (Radians incidence : request.incidences) panels.push_back(evaluate(scatterer, incidence));
-    const LogAxis axis = axisOf(panels);
+    const LogAxis axis = axisOf(panels, bands);
 
-    const double rows = static_cast<double>(panels.size());
-    Svg svg(kLeft + 3 * kPanel + kRight, kTop + rows * kPanel + kBottom);
-    svg.text({kLeft, 24}, request.title, Anchor::Start, 15);
-    for (Band band : kBands) {
-        svg.text({kLeft + (static_cast<double>(index(band)) + 0.45) * kPanel, 48},
-                 std::string(1, "RGB"[index(band)]) + "  " + fixed(nanometres(band), 0) + " nm",
-                 Anchor::Middle,
-                 12);
-    }
+    const double width = static_cast<double>(bands.size()) * kPanel;
+    const double height = static_cast<double>(panels.size()) * kPanel;
+    Svg svg(kLeft + width + kRight, kTop + height + kBottom);
+    drawHeading(svg, request);
     for (std::size_t row = 0; row < panels.size(); ++row) {
         const double top = kTop + static_cast<double>(row) * kPanel;
-        svg.text({10, top + kPanel / 2}, fixed(request.incidences[row].degrees(), 0) + " deg");
-        for (Band band : kBands) {
-            const double left = kLeft + static_cast<double>(index(band)) * kPanel;
-            drawRaster(svg, {left, top}, panels[row].bands[index(band)], axis);
+        svg.text({10, top + 86}, "light at", Anchor::Start, 10);
+        svg.text({10, top + 101}, degreesLabel(request.incidences[row]));
+        for (Band band : bands) {
+            const Point corner{kLeft + static_cast<double>(index(band)) * kPanel, top};
+            drawRaster(svg, corner, panels[row], band, axis);
+            drawRings(svg, corner, request.incidences[row]);
         }
     }
-    drawScale(svg, {kLeft + 3 * kPanel + 4, kTop}, std::max(1.0, rows) * kPanel - 20, axis);
+    if (panels.empty()) return svg.document();
+    for (Band band : bands) {
+        const double middle = kLeft + static_cast<double>(index(band)) * kPanel + kRaster / 2.0;
+        svg.text({middle, kTop - 12}, bandLabel(scatterer, band), Anchor::Middle, 12);
+    }
+    drawScale(svg, {kLeft + width + 4, kTop}, height - (kPanel - kRaster), axis);
     return svg.document();
 }
 

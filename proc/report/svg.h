@@ -1,6 +1,7 @@
 #pragma once
 // The few SVG elements that our plots are made of. Coordinates are user units (pixels at scale 1),
-// x to the right, y down. Text is escaped.
+// x to the right, y down. Text may be anything: it is escaped, and what no XML may hold (control
+// characters, bytes that are no UTF-8) becomes '?'.
 
 #include <string>
 #include <string_view>
@@ -34,9 +35,12 @@ public:
     void polygon(const std::vector<Point>& points, std::string_view fill, double opacity);
     void circle(Point centre, double radius, const Stroke& stroke);
     void rectangle(Point corner, Point size, std::string_view fill);
-    /// Ready-made path data, stroked one unit wide: runs of raster pixels.
+    /// Ready-made path data, stroked one unit wide without smoothing, so that neighbours leave no
+    /// seam: runs of raster pixels.
     void runs(std::string_view pathData, std::string_view colour);
     void text(Point at, std::string_view words, Anchor anchor = Anchor::Start, double size = 11);
+    /// Large, and cut with dots where it would leave the picture.
+    void title(Point at, std::string_view words);
 
     /// The whole document.
     [[nodiscard]] std::string document() const;

@@ -1,0 +1,24 @@
+#pragma once
+// What every plot is asked for, and the words they share.
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "proc/core/scatterer.h"
+
+namespace gonio::proc {
+
+struct PlotRequest {
+    std::string title;
+    std::vector<Radians> incidences;  ///< light at phi = 0
+};
+
+/// The bands that differ: all three, or one of what is monochrome.
+[[nodiscard]] std::span<const Band> shownBands(const Scatterer& scatterer);
+/// "G 525 nm"; "monochrome" where one band stands for all.
+[[nodiscard]] std::string bandLabel(const Scatterer& scatterer, Band band);
+/// "22.5 deg", "40 deg": to a tenth of a degree.
+[[nodiscard]] std::string degreesLabel(Radians angle);
+
+}  // namespace gonio::proc
