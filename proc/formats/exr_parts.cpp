@@ -19,6 +19,7 @@
 #include <thread>
 
 #include "proc/formats/exr_header_walk.h"
+#include "proc/formats/shown.h"
 
 namespace gonio::proc {
 namespace {
@@ -72,8 +73,19 @@ int encodingThreads() {
     return threads;
 }
 
-Imf::Header headerOf(const ExrPart& part) {
+/// All parts of a file must share one display window: it holds the largest of them.
+Imath::Box2i displayWindow(std::span<const ExrPart> parts) {
+    Imath::V2i last(0, 0);
+    for (const ExrPart& part : parts) {
+        last.x = std::max(last.x, part.size.width - 1);
+        last.y = std::max(last.y, part.size.height - 1);
+    }
+    return {Imath::V2i(0, 0), last};
+}
+
+Imf::Header headerOf(const ExrPart& part, const Imath::Box2i& display) {
     Imf::Header header(part.size.width, part.size.height);
+    header.displayWindow() = display;
     header.setName(part.name);
     header.setType(Imf::SCANLINEIMAGE);
     header.compression() = Imf::ZIP_COMPRESSION;
@@ -108,7 +120,7 @@ Imf::FrameBuffer bufferOf(const ExrPart& part) {
 
 std::string encode(std::span<const ExrPart> parts) {
     std::vector<Imf::Header> headers;
-    for (const ExrPart& part : parts) headers.push_back(headerOf(part));
+    for (const ExrPart& part : parts) headers.push_back(headerOf(part, displayWindow(parts)));
     MemoryOut out;
     {
         Imf::MultiPartOutputFile file(
@@ -122,27 +134,42 @@ std::string encode(std::span<const ExrPart> parts) {
     return out.take();
 }
 
-/// The pixels may not be more than deflate can hold in the file (1032 : 1), whatever it promises.
-constexpr std::size_t kMostRatio = 1032;
+/// The pixels of all parts may not be more than deflate can hold in the file (1032 : 1), whatever
+/// the headers promise: known before the library or we make room for any.
+void checkPromise(const Imf::MultiPartInputFile& file, std::size_t fileBytes) {
+    constexpr std::size_t kMostRatio = 1032;
+    std::size_t promised = 0;
+    for (int i = 0; i < file.parts(); ++i) {
+        const Imf::Header& header = file.header(i);
+        const Imath::Box2i window = header.dataWindow();
+        if (window.min != Imath::V2i(0, 0)) {
+            throw std::runtime_error("a picture does not start at 0,0");
+        }
+        const Size size{window.max.x + 1, window.max.y + 1};
+        for (auto it = header.channels().begin(); it != header.channels().end(); ++it) {
+            promised += size.pixels() * sizeof(float);
+        }
+    }
+    if (promised / kMostRatio > fileBytes) {
+        throw std::runtime_error("more pixels than the file can hold");
+    }
+}
 
-ExrPart emptyPart(const Imf::Header& header, std::size_t fileBytes) {
+ExrPart emptyPart(const Imf::Header& header) {
     ExrPart part;
     part.name = header.hasName() ? header.name() : "";
     const Imath::Box2i window = header.dataWindow();
-    if (window.min != Imath::V2i(0, 0)) throw std::runtime_error("a picture does not start at 0,0");
     part.size = {window.max.x + 1, window.max.y + 1};
     for (auto it = header.begin(); it != header.end(); ++it) {
         const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute());
         if (text != nullptr) part.text[it.name()] = text->value();
     }
-    std::size_t bytes = 0;
+    for (const char* ours : {"name", "type"}) part.text.erase(ours);  // of the container, not texts
     for (auto it = header.channels().begin(); it != header.channels().end(); ++it) {
         const Imf::Channel& channel = it.channel();
         if (channel.xSampling != 1 || channel.ySampling != 1) {
             throw std::runtime_error("a channel is not sampled at every pixel");
         }
-        bytes += part.size.pixels() * sizeof(float);
-        if (bytes / kMostRatio > fileBytes) throw std::runtime_error("more pixels than the file can hold");
         if (channel.type == Imf::UINT) {
             part.counts[it.name()].resize(part.size.pixels());
         } else {
@@ -155,10 +182,11 @@ ExrPart emptyPart(const Imf::Header& header, std::size_t fileBytes) {
 std::vector<ExrPart> decode(std::string_view bytes) {
     MemoryIn in(bytes);
     Imf::MultiPartInputFile file(in, 0, false);
+    checkPromise(file, bytes.size());
     std::vector<ExrPart> parts;
     for (int i = 0; i < file.parts(); ++i) {
         Imf::InputPart input(file, i);
-        ExrPart part = emptyPart(input.header(), bytes.size());
+        ExrPart part = emptyPart(input.header());
         input.setFrameBuffer(bufferOf(part));
         input.readPixels(0, part.size.height - 1);
         parts.push_back(std::move(part));
@@ -169,9 +197,9 @@ std::vector<ExrPart> decode(std::string_view bytes) {
 /// The library's messages end in dots and line ends, and name our memory as the file.
 std::string reason(const std::exception& thrown) {
     std::string text = thrown.what();
-    if (const std::size_t dot = text.find_first_of("\n"); dot != std::string::npos) text.resize(dot);
+    text.resize(std::min(text.find('\n'), text.size()));
     while (!text.empty() && (text.back() == '.' || text.back() == ' ')) text.pop_back();
-    return text;
+    return printable(text);
 }
 
 }  // namespace

@@ -44,10 +44,10 @@ Result<std::string> readFile(const fs::path& path, std::size_t limit) {
     const Result<std::size_t> size = regularSize(path);
     if (!size) return size.error();
     if (*size > limit) {
-        return fileError("read",
-                         path,
-                         std::to_string(*size) + " bytes, at most " + std::to_string(limit) +
-                             " are read");
+        return fileError(
+            "read",
+            path,
+            std::to_string(*size) + " bytes, at most " + std::to_string(limit) + " are read");
     }
     return readUpTo(path, *size);
 }

@@ -1,5 +1,6 @@
 #include "proc/formats/gonio_exr.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -8,6 +9,7 @@
 #include "proc/formats/exr_parts.h"
 #include "proc/formats/file_bytes.h"
 #include "proc/formats/file_degrees.h"
+#include "proc/formats/shown.h"
 #include "proc/optics/cell_grid.h"
 
 namespace gonio::proc {
@@ -60,17 +62,16 @@ std::map<std::string, std::string> textOf(const SampleInfo& info) {
     std::map<std::string, std::string> text{{"gonio.schema", std::string(kSampleSchema)},
                                             {"gonio.scatter", "BRDF"}};
     for (const TextField& t : kTexts) text[t.key] = info.*t.field;
-    text["gonio.rig_seconds"] = shortest(info.rigSeconds);
-    text["gonio.compute_seconds"] = shortest(info.computeSeconds);
-    if (info.requestedUncertainty) {
-        text["gonio.requested_uncertainty"] = shortest(*info.requestedUncertainty);
-    }
-    if (info.achievedUncertainty) {
-        text["gonio.achieved_uncertainty"] = shortest(*info.achievedUncertainty);
-    }
+    const auto add = [&](const char* key, std::optional<double> value) {
+        if (value && std::isfinite(*value)) text[key] = shortest(*value);
+    };
+    add("gonio.rig_seconds", info.rigSeconds);
+    add("gonio.compute_seconds", info.computeSeconds);
+    add("gonio.requested_uncertainty", info.requestedUncertainty);
+    add("gonio.achieved_uncertainty", info.achievedUncertainty);
     text["gonio.interruptions"] = std::to_string(info.interruptions);
-    text["gonio.extra"] = nlohmann::json(info.extra).dump(
-        -1, ' ', false, nlohmann::json::error_handler_t::replace);
+    text["gonio.extra"] =
+        nlohmann::json(info.extra).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
     return text;
 }
 
@@ -115,6 +116,16 @@ ExrPart partOf(const LedTable& led, Band band) {
     return part;
 }
 
+/// The first channel that holds an infinite value; empty where none does.
+std::string infiniteChannel(const ExrPart& part) {
+    for (const auto& [name, pixels] : part.floats) {
+        if (std::any_of(pixels.begin(), pixels.end(), [](float f) { return std::isinf(f); })) {
+            return name;
+        }
+    }
+    return "";
+}
+
 /// Reads the parts of one file. The first complaint stops it.
 class Decoder {
 public:
@@ -134,8 +145,8 @@ private:
 
     bool schema(const ExrPart& part) {
         const std::string seen = textAt(part, "gonio.schema").value_or("");
-        return seen == kSampleSchema || fail("schema '" + seen.substr(0, 40) + "', wanted " +
-                                             std::string(kSampleSchema));
+        return seen == kSampleSchema ||
+               fail("schema " + shown(seen) + ", wanted " + std::string(kSampleSchema));
     }
 
     static std::optional<std::string> textAt(const ExrPart& part, const std::string& key) {
@@ -158,8 +169,7 @@ private:
     bool info(const ExrPart& part) {
         SampleInfo& info = set_.info;
         for (const TextField& t : kTexts) info.*t.field = textAt(part, t.key).value_or("");
-        const auto interruptions =
-            parseInteger(textAt(part, "gonio.interruptions").value_or("0"));
+        const auto interruptions = parseInteger(textAt(part, "gonio.interruptions").value_or("0"));
         if (!interruptions || *interruptions < 0 || *interruptions > 1'000'000) {
             return fail("attribute gonio.interruptions is not a count");
         }
@@ -194,8 +204,9 @@ private:
                 ++used;
                 if (!ledBand(*found->second, band, table)) return false;
             }
-            if (used == before) return fail("parts are missing: there is no led" +
-                                            std::to_string(led) + ".r, .g or .b");
+            if (used == before)
+                return fail("parts are missing: there is no led" + std::to_string(led) +
+                            ".r, .g or .b");
             set_.leds.push_back(std::move(table));
         }
         return true;
@@ -206,8 +217,15 @@ private:
         if (!degrees || *degrees < 0 || *degrees >= 90) {
             return fail("part " + part.name + ": gonio.incidence_deg is not in [0, 90)");
         }
+        const Radians incidence = Radians::fromDegrees(*degrees);
+        const bool first = std::all_of(into.bands.begin(), into.bands.end(), [](const auto& cells) {
+            return cells.size() == 0;
+        });
+        if (!first && incidence != into.incidence) {
+            return fail("part " + part.name + ": another incidence than the LED's first band");
+        }
         if (!wholePicture(part)) return false;
-        into.incidence = Radians::fromDegrees(*degrees);
+        into.incidence = incidence;
         CellSamples& cells = into.bands[index(band)];
         cells.f = gathered(part.floats.at("f"));
         cells.uRandom = gathered(part.floats.at("u_random"));
@@ -225,11 +243,10 @@ private:
         const std::string where = "part " + part.name + ": ";
         if (!(part.size == kPicture)) return fail(where + "not 360 x 90");
         for (const char* channel : {"f", "u_random", "u_systematic", "n_eff"}) {
-            const auto found = part.floats.find(channel);
-            if (found == part.floats.end()) return fail(where + "no float channel " + channel);
-            for (const float value : found->second) {
-                if (std::isinf(value)) return fail(where + "an infinite value in " + channel);
-            }
+            if (!part.floats.contains(channel)) return fail(where + "no float channel " + channel);
+        }
+        if (const std::string channel = infiniteChannel(part); !channel.empty()) {
+            return fail(where + "an infinite value in " + channel);
         }
         const auto flags = part.counts.find("flags");
         const auto ids = part.counts.find("cell_id");
@@ -259,12 +276,15 @@ Result<std::string> encodeGonio(const SampleSet& set) {
             if (cells.size() == 0) continue;
             if (!isWhole(cells)) {
                 return Error{ErrorKind::Internal,
-                             "gonio: " + partName(led, band) + ": " +
-                                 std::to_string(cells.size()) + " cells, the grid has " +
-                                 std::to_string(CellGrid::count())};
+                             "gonio: " + partName(led, band) + ": " + std::to_string(cells.size()) +
+                                 " cells, the grid has " + std::to_string(CellGrid::count())};
             }
             parts.push_back(partOf(set.leds[led], band));
             parts.back().name = partName(led, band);
+            if (const std::string channel = infiniteChannel(parts.back()); !channel.empty()) {
+                return Error{ErrorKind::Internal,
+                             "gonio: " + partName(led, band) + ": an infinite value in " + channel};
+            }
         }
         if (parts.size() == before) {
             return Error{ErrorKind::Internal,

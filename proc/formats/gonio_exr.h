@@ -19,7 +19,8 @@ namespace gonio::proc {
 
 inline constexpr std::string_view kSampleSchema = "gonio/sample/1";
 
-/// Internal error for a set without any measured band, or whose cells are not CellGrid's.
+/// Internal error for a set without any measured band, whose cells are not CellGrid's or not all
+/// within a float's range. A number of the info that is not finite is left out.
 [[nodiscard]] Result<std::string> encodeGonio(const SampleSet& set);
 /// `name` stands in errors: "gonio: NAME: part led0.r: ...".
 [[nodiscard]] Result<SampleSet> decodeGonio(std::string_view bytes, std::string_view name);

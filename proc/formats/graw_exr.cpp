@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <stdexcept>
+#include <utility>
 
 #include "proc/core/number_text.h"
 #include "proc/formats/exr_parts.h"
 #include "proc/formats/file_bytes.h"
+#include "proc/formats/shown.h"
 
 namespace gonio::proc {
 namespace {
@@ -32,14 +35,24 @@ json toJson(const RawExposure& e) {
             {"celsius", celsius}};
 }
 
-/// Throws json::exception where something is missing or of the wrong kind.
+/// The library would turn 70000 into the level 4464, and 1e300 into anything.
+template <class T>
+T integerFrom(const json& j) {
+    const bool fits = j.is_number_unsigned()
+                          ? std::in_range<T>(j.get<std::uint64_t>())
+                          : j.is_number_integer() && std::in_range<T>(j.get<std::int64_t>());
+    if (!fits) throw std::out_of_range("not an integer of its range");
+    return j.get<T>();
+}
+
+/// Throws where something is missing or of the wrong kind.
 RawExposure exposureFrom(const json& j) {
     RawExposure e;
-    e.captureId = j.at("capture_id").get<std::uint64_t>();
-    e.granted = Nanoseconds(j.at("granted_ns").get<std::int64_t>());
-    e.level = j.at("level").get<std::uint16_t>();
-    e.frames = j.at("frames").get<int>();
-    e.blackLevel = j.at("black_level").get<std::uint16_t>();
+    e.captureId = integerFrom<std::uint64_t>(j.at("capture_id"));
+    e.granted = Nanoseconds(integerFrom<std::int64_t>(j.at("granted_ns")));
+    e.level = integerFrom<std::uint16_t>(j.at("level"));
+    e.frames = integerFrom<int>(j.at("frames"));
+    e.blackLevel = integerFrom<std::uint16_t>(j.at("black_level"));
     const json& celsius = j.at("celsius");
     for (std::size_t i = 0; i < e.celsius.size(); ++i) {
         if (!celsius.at(i).is_null()) e.celsius[i] = celsius.at(i).get<double>();
@@ -61,20 +74,20 @@ json toJson(const RawState& state) {
             {"bracket", bracket}};
 }
 
-/// Throws json::exception as above; the pictures are still empty.
+/// Throws as above; the pictures are still empty.
 RawState stateFrom(const json& j) {
     RawState state;
     MergedState& m = state.merged;
-    m.led = j.at("led").get<int>();
-    m.band = kBands.at(j.at("band").get<std::size_t>());
+    m.led = integerFrom<int>(j.at("led"));
+    m.band = kBands.at(integerFrom<std::size_t>(j.at("band")));
     const json& window = j.at("window");
-    m.window = {.x = window.at(0).get<int>(),
-                .y = window.at(1).get<int>(),
-                .size = {window.at(2).get<int>(), window.at(3).get<int>()},
-                .binning = j.at("binning").get<int>()};
-    m.allSaturatedPixels = j.at("all_saturated_pixels").get<std::size_t>();
+    m.window = {.x = integerFrom<int>(window.at(0)),
+                .y = integerFrom<int>(window.at(1)),
+                .size = {integerFrom<int>(window.at(2)), integerFrom<int>(window.at(3))},
+                .binning = integerFrom<int>(j.at("binning"))};
+    m.allSaturatedPixels = integerFrom<std::size_t>(j.at("all_saturated_pixels"));
     m.chiSquare = j.at("chi_square").get<double>();
-    m.freedom = j.at("freedom").get<std::size_t>();
+    m.freedom = integerFrom<std::size_t>(j.at("freedom"));
     for (const json& e : j.at("bracket")) state.bracket.push_back(exposureFrom(e));
     return state;
 }
@@ -113,10 +126,17 @@ bool hasChannels(const ExrPart& part) {
            part.counts.contains("used") && part.counts.contains("saturated");
 }
 
-/// Throws json::exception where the state's attribute is malformed.
+/// Does the attribute speak of the part it stands in? Its window is what these pixels show.
+bool belongsTo(const RawState& state, const ExrPart& part) {
+    const Window& window = state.merged.window;
+    return part.name == partName(state) && window.binning > 0 && window.sent() == part.size;
+}
+
+/// Throws where the state's attribute is malformed, or another part's.
 RawState stateOf(ExrPart&& part) {
     const auto text = part.text.find("gonio.state");
     RawState state = stateFrom(json::parse(text == part.text.end() ? "" : text->second));
+    if (!belongsTo(state, part)) throw std::invalid_argument("another part's state");
     const auto bytes = [&](const char* channel) {
         std::vector<std::uint8_t> pixels;
         pixels.reserve(part.size.pixels());
@@ -147,11 +167,12 @@ Result<RawCapture> captureOf(std::vector<ExrPart>&& parts, std::string_view name
         }
         for (ExrPart& each : parts) {
             part = each.name;
-            if (!hasChannels(each)) return malformed(name, "part " + part + ": channels missing");
+            if (!hasChannels(each))
+                return malformed(name, "part " + shown(part) + ": channels missing");
             capture.states.push_back(stateOf(std::move(each)));
         }
     } catch (const std::exception&) {
-        return malformed(name, "part " + part + ": its attributes are not those of a state");
+        return malformed(name, "part " + shown(part) + ": its attributes are not those of a state");
     }
     return capture;
 }

@@ -8,6 +8,7 @@
 #include "proc/core/number_text.h"
 #include "proc/formats/file_bytes.h"
 #include "proc/formats/file_degrees.h"
+#include "proc/formats/shown.h"
 #include "proc/optics/cell_grid.h"
 
 namespace gonio::proc {
@@ -46,13 +47,21 @@ std::vector<std::string_view> fieldsOf(std::string_view line) {
     return fields;
 }
 
-std::string shown(std::string_view text) {
-    constexpr std::size_t kLongest = 40;
-    std::string out(text.substr(0, kLongest));
-    for (char& c : out) {
-        if (c < ' ' || c > '~') c = '?';
+/// A doubled quote stands for one.
+std::string nameIn(std::string_view field) {
+    std::string name;
+    for (std::size_t i = 0; i < field.size(); ++i) {
+        name += field[i];
+        if (field.substr(i).starts_with("\"\"")) ++i;
     }
-    return "'" + out + (text.size() > kLongest ? "..." : "") + "'";
+    return name;
+}
+
+std::string quotedIfNeeded(const std::string& name) {
+    if (name.find_first_of(",\"") == std::string::npos && !name.starts_with('#')) return name;
+    std::string quoted = "\"";
+    for (const char c : name) quoted += c == '"' ? "\"\"" : std::string(1, c);
+    return quoted + '"';
 }
 
 std::string joined(std::span<const std::string_view> names) {
@@ -77,7 +86,7 @@ public:
         if (text_.starts_with("\xEF\xBB\xBF")) text_.remove_prefix(3);  // UTF-8 byte order mark
         while (const auto line = nextLine()) {
             const bool good = points_.columns.empty() ? header(*line) : row(*line);
-            if (!good) return *error_;
+            if (!good || !quotesEnd(*line)) return *error_;
         }
         if (points_.columns.empty()) {
             fail("no header, wanted " + joined(kAngles) + " or " + joined(kVectors));
@@ -88,28 +97,33 @@ public:
 
 private:
     bool fail(const std::string& what) {
-        error_ = Error{ErrorKind::File,
-                       "csv: " + std::string(name_) + ": line " + std::to_string(line_) + ": " +
-                           what};
+        error_ =
+            Error{ErrorKind::File,
+                  "csv: " + std::string(name_) + ": line " + std::to_string(line_) + ": " + what};
         return false;
     }
 
-    /// The next line that says something.
+    /// The next line that says something. A line ends in LF, CR LF or a bare CR.
     std::optional<std::string_view> nextLine() {
         while (at_ < text_.size()) {
-            const std::size_t end = std::min(text_.find('\n', at_), text_.size());
-            std::string_view line = text_.substr(at_, end - at_);
-            at_ = end + 1;
+            const std::size_t end = std::min(text_.find_first_of("\r\n", at_), text_.size());
+            const std::string_view line = text_.substr(at_, end - at_);
+            at_ = end + (text_.substr(end).starts_with("\r\n") ? 2 : 1);
             ++line_;
-            if (line.ends_with('\r')) line.remove_suffix(1);
             const std::string_view content = trimmed(line);
             if (!content.empty() && content.front() != '#') return line;
         }
         return std::nullopt;
     }
 
+    bool quotesEnd(std::string_view line) {
+        const bool even = std::count(line.begin(), line.end(), '"') % 2 == 0;
+        return even || fail("a quoted field does not end on its line");
+    }
+
     bool header(std::string_view line) {
-        for (const std::string_view name : fieldsOf(line)) points_.columns.emplace_back(name);
+        for (const std::string_view field : fieldsOf(line))
+            points_.columns.push_back(nameIn(field));
         const auto& columns = points_.columns;
         const auto count = [&](std::string_view name) {
             return std::count(columns.begin(), columns.end(), name);
@@ -183,10 +197,6 @@ private:
     bool vectors_ = false;
     std::optional<Error> error_;
 };
-
-std::string quotedIfNeeded(const std::string& name) {
-    return name.find(',') == std::string::npos ? name : '"' + name + '"';
-}
 
 std::string orEmpty(double value) { return std::isfinite(value) ? shortest(value) : ""; }
 
@@ -267,8 +277,7 @@ std::string sampleCsv(const SampleSet& set) {
             std::array<Measured<double>, 3> at;
             for (const Band b : kBands) {
                 const CellSamples& cells = led.bands[index(b)];
-                at[index(b)] =
-                    cell < cells.size() ? cells.at(cell) : Measured<double>::missing();
+                at[index(b)] = cell < cells.size() ? cells.at(cell) : Measured<double>::missing();
             }
             for (const auto& m : at) text += "," + orEmpty(m.value);
             for (const auto& m : at) text += "," + orEmpty(m.u());

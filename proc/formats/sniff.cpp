@@ -26,8 +26,8 @@ bool hasLine(std::string_view text, std::string_view word) {
     for (std::size_t at = text.find(word); at != std::string_view::npos;
          at = text.find(word, at + 1)) {
         const std::size_t line = text.find_last_not_of(" \t", at == 0 ? 0 : at - 1);
-        const bool first = at == 0 || line == std::string_view::npos || text[line] == '\n' ||
-                           text[line] == '\r';
+        const bool first =
+            at == 0 || line == std::string_view::npos || text[line] == '\n' || text[line] == '\r';
         const std::size_t end = at + word.size();
         if (first && (end == text.size() || std::isspace(static_cast<unsigned char>(text[end])))) {
             return true;

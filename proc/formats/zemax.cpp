@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cctype>
+#include <cmath>
 #include <map>
 #include <optional>
 
 #include "proc/core/number_text.h"
 #include "proc/formats/file_bytes.h"
+#include "proc/formats/shown.h"
 
 namespace gonio::proc {
 namespace {
@@ -17,16 +18,6 @@ std::string lower(std::string_view text) {
     std::string out(text);
     for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     return out;
-}
-
-/// A word of the file as an error may show it: short, printable.
-std::string shown(std::string_view word) {
-    constexpr std::size_t kLongest = 40;
-    std::string out(word.substr(0, kLongest));
-    for (char& c : out) {
-        if (std::isprint(static_cast<unsigned char>(c)) == 0) c = '?';
-    }
-    return "'" + out + (word.size() > kLongest ? "..." : "") + "'";
 }
 
 /// Words of the text with their line; comments are set aside.
@@ -60,17 +51,21 @@ private:
             if (text_[at_] == '#') {
                 skipComment();
             } else if (isSpace(text_[at_])) {
-                if (text_[at_] == '\n') ++line_;
+                if (endsLine()) ++line_;
                 ++at_;
             } else {
                 return;
             }
         }
     }
+    /// A line ends in LF, CR LF or, as some instruments write it, in a bare CR.
+    [[nodiscard]] bool endsLine() const {
+        if (text_[at_] == '\r') return at_ + 1 == text_.size() || text_[at_ + 1] != '\n';
+        return text_[at_] == '\n';
+    }
     void skipComment() {
-        const std::size_t end = std::min(text_.find('\n', at_), text_.size());
+        const std::size_t end = std::min(text_.find_first_of("\r\n", at_), text_.size());
         std::string_view comment = text_.substr(at_ + 1, end - at_ - 1);
-        if (!comment.empty() && comment.back() == '\r') comment.remove_suffix(1);
         if (!comment.empty() && comment.front() == ' ') comment.remove_prefix(1);
         comments_.emplace_back(comment);
         at_ = end;
@@ -153,13 +148,13 @@ private:
     bool headerLine(const std::string& key) {
         if (key == "symmetry") return symmetry();
         if (key == "spectralcontent") {
-            return choose<TableColour>(table_.colour,
-                                       {{"Monochrome", TableColour::Monochrome},
-                                        {"XYZ", TableColour::Xyz}});
+            return choose<TableColour>(
+                table_.colour,
+                {{"Monochrome", TableColour::Monochrome}, {"XYZ", TableColour::Xyz}});
         }
         if (key == "scattertype") {
-            return choose<ScatterKind>(
-                table_.kind, {{"BRDF", ScatterKind::Brdf}, {"BTDF", ScatterKind::Btdf}});
+            return choose<ScatterKind>(table_.kind,
+                                       {{"BRDF", ScatterKind::Brdf}, {"BTDF", ScatterKind::Btdf}});
         }
         if (key == "source") {
             int any = 0;
@@ -248,10 +243,8 @@ private:
                         shortest(table_.incidenceDeg.back()) + ", wanted below 90");
         }
         std::size_t promised = planeCount(table_.colour);
-        for (const auto* each : {&table_.rotationDeg,
-                                 &table_.incidenceDeg,
-                                 &table_.azimuthDeg,
-                                 &table_.radialDeg}) {
+        for (const auto* each :
+             {&table_.rotationDeg, &table_.incidenceDeg, &table_.azimuthDeg, &table_.radialDeg}) {
             promised = productOrMost(promised, each->size());
         }
         if (promised > words_.bytesLeft() / 2 + 1) {
@@ -325,19 +318,17 @@ private:
     /// At radial 0 every azimuth is the same direction: one value, the mean of those that are data.
     void shareTheCentre(std::vector<double>& f, std::size_t start) const {
         const std::size_t stride = table_.radialDeg.size();
-        double sum = 0;
-        std::size_t count = 0;
+        double mean = 0;
+        double count = 0;
         bool differ = false;
         for (std::size_t i = start; i < f.size(); i += stride) {
             differ = differ || f[i] != f[start];
             if (f[i] == 0) continue;
-            sum += f[i];
             ++count;
+            mean += f[i] / count - mean / count;  // stays finite: a sum might not
         }
-        if (!differ || count == 0) return;
-        for (std::size_t i = start; i < f.size(); i += stride) {
-            f[i] = sum / static_cast<double>(count);
-        }
+        if (!differ) return;
+        for (std::size_t i = start; i < f.size(); i += stride) f[i] = mean;
     }
 
     Words words_;
@@ -377,16 +368,20 @@ void appendPlane(Written& out, const SpecularTable& table, std::size_t plane) {
     const std::size_t radials = table.radialDeg.size();
     const std::size_t block = table.azimuthDeg.size() * radials;
     std::size_t lost = 0;
+    std::size_t lostTis = 0;
+    const auto finite = [](double value, std::size_t& count) {
+        count += std::isfinite(value) ? 0U : 1U;
+        return std::isfinite(value) ? shortest(value) : "0";
+    };
     out.bytes += "\n" + std::string(sectionName(table.colour, plane)) + "\nDataBegin\n";
     for (std::size_t i = 0; i < values.f.size(); ++i) {
-        if (i % block == 0) out.bytes += "TIS  " + shortest(values.tis[i / block]) + "\n";
-        const bool finite = std::isfinite(values.f[i]);
-        lost += finite ? 0U : 1U;
-        out.bytes += finite ? shortest(values.f[i]) : "0";
+        if (i % block == 0) out.bytes += "TIS  " + finite(values.tis[i / block], lostTis) + "\n";
+        out.bytes += finite(values.f[i], lost);
         out.bytes += (i + 1) % radials == 0 ? "\n" : "\t";
     }
     out.bytes += "DataEnd\n";
     out.loss.add("nodes without a finite value, written as 0", lost);
+    out.loss.add("TIS without a finite value, written as 0", lostTis);
 }
 
 }  // namespace
