@@ -40,6 +40,14 @@ TEST(NumberText, ShortestReadsBackToTheSameBits) {
     EXPECT_EQ(shortest(0.1F), "0.1");
 }
 
+TEST(NumberText, SaysWhatIsNoNumber) {
+    const double inf = std::numeric_limits<double>::infinity();
+    EXPECT_EQ(shortest(std::numeric_limits<double>::quiet_NaN()), "nan");
+    EXPECT_EQ(shortest(inf), "inf");
+    EXPECT_EQ(shortest(-inf), "-inf");
+    EXPECT_FALSE(parseDouble(shortest(inf)));  // and never reads it back as one
+}
+
 TEST(NumberText, FixedHoldsTheLargestDouble) {
     EXPECT_EQ(fixed(2.345, 2), "2.35");
     EXPECT_EQ(fixed(std::numeric_limits<double>::max(), 2).size(), 312U);

@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <random>
+#include <set>
+#include <string>
 
 #include "tests/driver/wire_frames.h"
 
@@ -327,6 +330,41 @@ TEST(Anomalies, ReadAsAList) {
     EXPECT_EQ(some.text(), "2 bad payloads, 1 lost chunk");
     EXPECT_EQ(some.total(), 3U);
     EXPECT_EQ(some.since(some), Anomalies{});
+}
+
+constexpr std::array kCounts{&Anomalies::emptyTransfers,
+                             &Anomalies::badLengths,
+                             &Anomalies::badHeaders,
+                             &Anomalies::badPayloads,
+                             &Anomalies::badFrames,
+                             &Anomalies::lostChunks,
+                             &Anomalies::disordered,
+                             &Anomalies::duplicates,
+                             &Anomalies::stale,
+                             &Anomalies::unknownTypes,
+                             &Anomalies::contradictions,
+                             &Anomalies::aborted,
+                             &Anomalies::givenUp};
+static_assert(sizeof(Anomalies) == kCounts.size() * sizeof(std::uint32_t), "one of each");
+
+TEST(Anomalies, EachKindIsCountedSaidAndTakenOff) {
+    std::set<std::string> words;
+    Anomalies all;
+    for (std::size_t i = 0; i < kCounts.size(); ++i) {
+        Anomalies one;
+        one.*kCounts[i] = 1;
+        EXPECT_EQ(one.total(), 1U);
+        EXPECT_EQ(one.text().substr(0, 2), "1 ");
+        EXPECT_EQ(one.since({}), one);
+        EXPECT_NE(one, Anomalies{});
+        words.insert(one.text());
+        all.*kCounts[i] = static_cast<std::uint32_t>(i + 1);
+    }
+    EXPECT_EQ(words.size(), kCounts.size());
+    EXPECT_EQ(all.total(), 13U * 14 / 2);
+    Anomalies fewer = all;
+    fewer.*kCounts[4] -= 2;
+    EXPECT_EQ(all.since(fewer), (Anomalies{.badFrames = 2}));
 }
 
 }  // namespace

@@ -395,5 +395,52 @@ TEST(Rig, TakesUpItsOwnClaimFromAnIdleRig) {
     EXPECT_EQ(rig.status()->state, RigState::Idle);
 }
 
+TEST(Rig, DarkenPutsOutWhatACaptureLeftLit) {
+    ScriptedRig device;
+    Rig rig = configured(device);
+    ASSERT_TRUE(rig.capture(kRequest));
+    EXPECT_EQ(device.led.levels[0], 65535);  // keepLit
+    ASSERT_TRUE(rig.darken());
+    EXPECT_EQ(device.led.levels, (std::array<std::uint16_t, 3>{}));
+    EXPECT_TRUE(rig.capture(kRequest));  // and it can be lit again
+}
+
+TEST(Rig, ReportsItsStatusAndItsLink) {
+    ScriptedRig device;
+    Rig rig = configured(device);
+    const auto status = rig.status();
+    ASSERT_TRUE(status) << status.error().message;
+    EXPECT_EQ(status->bootId, test::kBoot);
+    EXPECT_EQ(status->state, RigState::Idle);
+    EXPECT_EQ(rig.link().strings().serial, "TEST-0001");
+    EXPECT_EQ(rig.link().ident(), device.ident);
+    EXPECT_EQ(&rig.link().clock(), &device.clock());
+    device.mute = true;
+    EXPECT_FALSE(rig.status());
+}
+
+TEST(Rig, KeepsTheHeartbeatWhileItsCallerIsBusy) {
+    ScriptedRig device;
+    Rig rig = configured(device);
+    const int before = device.count(Op::Ping);
+    for (int i = 0; i < 10; ++i) {
+        ASSERT_TRUE(device.readBulk(500ms));  // half a second of something else
+        ASSERT_TRUE(rig.keepAlive());
+    }
+    EXPECT_GT(device.count(Op::Ping), before);
+    EXPECT_LT(device.longestSilence, 2s);
+}
+
+TEST(Rig, ACaptureIsARangeOfItsFrames) {
+    ScriptedRig device;
+    Rig rig = configured(device);
+    const auto capture = rig.capture(kRequest);
+    ASSERT_TRUE(capture) << capture.error().message;
+    std::size_t count = 0;
+    for (const Frame& frame : *capture) EXPECT_EQ(&frame, &(*capture)[count++]);
+    EXPECT_EQ(count, capture->size());
+    EXPECT_EQ(&capture->front(), &(*capture)[0]);
+}
+
 }  // namespace
 }  // namespace gonio::driver

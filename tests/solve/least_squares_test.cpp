@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <set>
 
 namespace {
 
@@ -118,6 +119,27 @@ TEST(LeastSquares, NeverCallsAnUnfinishedFitConverged) {
     problem.start = {100, 1};
     problem.maxIterations = 1;
     EXPECT_EQ(fit(problem).status, FitStatus::NotConverged);
+}
+
+TEST(LeastSquares, GivesTheSameBitsEachTime) {
+    const FitReport a = fit(decayProblem());
+    const FitReport b = fit(decayProblem());
+    EXPECT_EQ(a.params, b.params);
+    EXPECT_EQ(a.covariance, b.covariance);
+    EXPECT_EQ(a.iterations, b.iterations);
+}
+
+TEST(FitStatus, EachHasANameOfItsOwn) {
+    std::set<std::string_view> names;
+    for (FitStatus status : {FitStatus::Converged,
+                             FitStatus::Singular,
+                             FitStatus::TooFewData,
+                             FitStatus::BadStart,
+                             FitStatus::NotConverged}) {
+        EXPECT_FALSE(name(status).empty());
+        names.insert(name(status));
+    }
+    EXPECT_EQ(names.size(), 5U);
 }
 
 }  // namespace

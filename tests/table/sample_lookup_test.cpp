@@ -52,8 +52,8 @@ TEST(SampleLookup, FollowsASmoothFunctionBetweenCentresAndAcrossThePole) {
     for (int i = 0; i < 5000; ++i) {
         // Half of them within two degrees of the normal.
         const double theta = (i % 2 == 0 ? 74.4 : 2) * unit(random);
-        const Direction wo = Direction::fromSpherical(Radians::fromDegrees(theta),
-                                                      Radians(2 * kPi * unit(random)));
+        const Direction wo =
+            Direction::fromSpherical(Radians::fromDegrees(theta), Radians(2 * kPi * unit(random)));
         const Answer answer = lookup().answer({ledAt(40), wo});
         // Linear over a cell of width w misses w^2/8 of the second derivative; near the pole three
         // sectors of 120 degrees stand half a degree away.
@@ -64,9 +64,9 @@ TEST(SampleLookup, FollowsASmoothFunctionBetweenCentresAndAcrossThePole) {
 TEST(SampleLookup, IsContinuousAcrossTheHalfDegreeRowAndPhiZero) {
     const auto f = [](double theta, double phi) {
         return lookup()
-            .answer({ledAt(20),
-                     Direction::fromSpherical(Radians::fromDegrees(theta),
-                                              Radians::fromDegrees(phi))})
+            .answer(
+                {ledAt(20),
+                 Direction::fromSpherical(Radians::fromDegrees(theta), Radians::fromDegrees(phi))})
             .f[Band::G];
     };
     EXPECT_NEAR(f(0.5 - 1e-7, 77), f(0.5 + 1e-7, 77), 1e-6);
@@ -109,9 +109,8 @@ TEST(SampleLookup, IsLinearInIncidenceAtEqualSpecularRelativeCoordinates) {
         return std::exp(-toSpecularRelative({wi, wo}).radial.value());
     }));
     const LightView pair{ledAt(50), Direction::fromSpherical(40_deg, 160_deg)};
-    EXPECT_NEAR(byRadial.answer(pair).f[Band::R],
-                std::exp(-toSpecularRelative(pair).radial.value()),
-                1e-3);
+    EXPECT_NEAR(
+        byRadial.answer(pair).f[Band::R], std::exp(-toSpecularRelative(pair).radial.value()), 1e-3);
 }
 
 TEST(SampleLookup, AMissingBandLeavesTheOthers) {
@@ -144,6 +143,16 @@ TEST(SampleLookup, AnswersNothingNextToAMissingCell) {
     EXPECT_EQ(answer.flags, Flags{Flag::Saturated});
     EXPECT_FALSE(at.answer({ledAt(20), centre.turned(0.5_deg)}).present());
     EXPECT_TRUE(at.answer({ledAt(40), centre}).present());
+}
+
+TEST(SampleLookup, SortsItsLedsByIncidence) {
+    SampleSet shuffled = test::sampleSet([](Radians, const Direction&) { return 0.1; });
+    std::swap(shuffled.leds[0], shuffled.leds[3]);
+    const SampleLookup lookup(shuffled);
+    ASSERT_EQ(lookup.set().leds.size(), 4U);
+    for (std::size_t i = 1; i < 4; ++i)
+        EXPECT_LT(lookup.set().leds[i - 1].incidence, lookup.set().leds[i].incidence);
+    EXPECT_EQ(lookup.set().info, shuffled.info);
 }
 
 }  // namespace

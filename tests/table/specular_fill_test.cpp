@@ -13,7 +13,8 @@ namespace {
 std::unique_ptr<const Scatterer> model(const char* spec) { return std::move(*makeModel(spec)); }
 
 SpecularGrid coarse(TableSymmetry symmetry) {
-    SpecularGrid grid{.symmetry = symmetry, .incidenceDeg = {0, 20, 60}, .azimuthDeg = {}, .radialDeg = {}};
+    SpecularGrid grid{
+        .symmetry = symmetry, .incidenceDeg = {0, 20, 60}, .azimuthDeg = {}, .radialDeg = {}};
     for (double a = 0; a <= (symmetry == TableSymmetry::PlaneSymmetrical ? 180 : 360); a += 20) {
         grid.azimuthDeg.push_back(a);
     }
@@ -23,7 +24,8 @@ SpecularGrid coarse(TableSymmetry symmetry) {
 
 TEST(SpecularFill, LambertScattersItsAlbedo) {
     const auto lambert = model("lambert,albedo=0.3/0.1/0.05");
-    const FilledTable filled = fillTable(*lambert, coarse(TableSymmetry::PlaneSymmetrical), Band::R);
+    const FilledTable filled =
+        fillTable(*lambert, coarse(TableSymmetry::PlaneSymmetrical), Band::R);
     ASSERT_EQ(filled.table.planes[0].tis.size(), 3U);
     for (const double tis : filled.table.planes[0].tis) EXPECT_NEAR(tis, 0.3, 1e-12);
     EXPECT_NEAR(totalScatter(*lambert, Direction(), Band::B), 0.05, 1e-12);

@@ -22,11 +22,11 @@ SpecularTable tableOf(TableSymmetry symmetry, const F& value) {
     for (TableNode n; n.incidence < 3; ++n.incidence) {
         for (n.azimuth = 0; n.azimuth < table.azimuthDeg.size(); ++n.azimuth) {
             for (n.radial = 0; n.radial < table.radialDeg.size(); ++n.radial) {
-                plane.f[table.index(n)] =
-                    table.canHoldData(n) ? value(table.incidenceDeg[n.incidence],
-                                                 table.azimuthDeg[n.azimuth],
-                                                 table.radialDeg[n.radial])
-                                         : 0;
+                plane.f[table.index(n)] = table.canHoldData(n)
+                                              ? value(table.incidenceDeg[n.incidence],
+                                                      table.azimuthDeg[n.azimuth],
+                                                      table.radialDeg[n.radial])
+                                              : 0;
             }
         }
     }

@@ -135,5 +135,55 @@ TEST(Chunk, ResentDiffersInSequenceFlagsAndHeaderCrcOnly) {
     EXPECT_EQ(chunk->header.streamSequence, 77U);
 }
 
+TEST(CheckChunk, NamesWhatIsWrongAndKeepsWhatCanBeBelieved) {
+    const auto good = goldenChunk();
+    const auto check = [&](auto change) {
+        auto bytes = good;
+        change(bytes);
+        return checkChunk(bytes);
+    };
+    const auto reseal = [](std::vector<std::uint8_t>& bytes) { restamp(bytes, 42, false); };
+
+    const CheckedChunk sound = checkChunk(good);
+    EXPECT_EQ(sound.fault, ChunkFault::None);
+    EXPECT_EQ(sound.headerBytes, kChunkHeaderBytes);
+    EXPECT_EQ(sound.chunk.header, goldenHeader());
+    EXPECT_EQ(sound.chunk.payload.size(), 9U);
+
+    EXPECT_EQ(checkChunk({}).fault, ChunkFault::Empty);
+    EXPECT_EQ(checkChunk(std::span(good).first(63)).fault, ChunkFault::Short);
+    EXPECT_EQ(check([](auto& b) { b[0] ^= 1; }).fault, ChunkFault::Magic);
+    EXPECT_EQ(check([](auto& b) { b[12] ^= 1; }).fault, ChunkFault::HeaderCrc);
+    EXPECT_EQ(check([&](auto& b) {
+                  b[4] = 2;
+                  reseal(b);
+              }).fault,
+              ChunkFault::Version);
+    // After Length and PayloadCrc the header still holds, and no payload is handed out.
+    for (const CheckedChunk& seen : {check([](auto& b) { b.pop_back(); }),
+                                     check([](auto& b) { b.push_back(0); }),
+                                     check([](auto& b) { b.back() ^= 1; })}) {
+        EXPECT_TRUE(seen.fault == ChunkFault::Length || seen.fault == ChunkFault::PayloadCrc);
+        EXPECT_EQ(seen.chunk.header, goldenHeader());
+        EXPECT_TRUE(seen.chunk.payload.empty());
+    }
+}
+
+TEST(CheckChunk, ALongerHeaderOfALaterMinorIsSkipped) {
+    auto bytes = goldenChunk();
+    bytes.insert(bytes.begin() + kChunkHeaderBytes, 4, 0xEE);
+    bytes[6] = 68;  // header_len
+    restamp(bytes, 42, false);
+    const CheckedChunk seen = checkChunk(bytes);
+    EXPECT_EQ(seen.fault, ChunkFault::None);
+    EXPECT_EQ(seen.headerBytes, 68U);
+    ASSERT_EQ(seen.chunk.payload.size(), 9U);
+    EXPECT_EQ(seen.chunk.payload[0], '1');
+    bytes[6] = 63;  // shorter than the fields that we read, the length as it then would be
+    bytes[36] = static_cast<std::uint8_t>(bytes.size() - 63);
+    restamp(bytes, 42, false);
+    EXPECT_EQ(checkChunk(bytes).fault, ChunkFault::Length);
+}
+
 }  // namespace
 }  // namespace gonio::driver

@@ -45,5 +45,20 @@ TEST(Crc32c, MatchesReferenceAtEveryLengthAndSplit) {
     }
 }
 
+TEST(Crc16, SeesEveryBitAndEveryTranspositionOfNeighbours) {
+    std::vector<std::uint8_t> bytes = digits();
+    const std::uint16_t right = crc16(bytes);
+    for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit) {
+        bytes[bit / 8] = static_cast<std::uint8_t>(bytes[bit / 8] ^ (1U << (bit % 8)));
+        EXPECT_NE(crc16(bytes), right) << bit;
+        bytes[bit / 8] = static_cast<std::uint8_t>(bytes[bit / 8] ^ (1U << (bit % 8)));
+    }
+    for (std::size_t i = 1; i < bytes.size(); ++i) {
+        std::swap(bytes[i - 1], bytes[i]);
+        EXPECT_NE(crc16(bytes), right) << i;
+        std::swap(bytes[i - 1], bytes[i]);
+    }
+}
+
 }  // namespace
 }  // namespace gonio::driver

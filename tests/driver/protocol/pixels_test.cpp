@@ -34,5 +34,14 @@ TEST(Pixels, RoundTripAtEveryWidth) {
 
 TEST(Pixels, UnknownFormatHasNoStride) { EXPECT_FALSE(strideOf(static_cast<PixelFormat>(9), 4)); }
 
+TEST(Pixels, StrideIsThatOfWholeRows) {
+    for (int width = 1; width <= 20; ++width) {
+        const auto pixels = static_cast<std::uint32_t>(width);
+        EXPECT_EQ(strideOf(PixelFormat::Mono16, width), 2 * pixels);
+        EXPECT_EQ(strideOf(PixelFormat::Mono12Packed, width), (3 * pixels + 1) / 2);
+    }
+    EXPECT_FALSE(strideOf(static_cast<PixelFormat>(0), 4));
+}
+
 }  // namespace
 }  // namespace gonio::driver

@@ -202,5 +202,39 @@ TEST(Reports, OperationsHaveTheNamesOfThePage) {
     EXPECT_EQ(opName(static_cast<Op>(77)), "op 77");
 }
 
+TEST(Reports, CommandsAcksEventsAndClaimsRejectEveryFlippedBit) {
+    Arguments arguments{};
+    for (std::size_t i = 0; i < arguments.size(); ++i)
+        arguments[i] = static_cast<std::uint8_t>(i + 1);
+    expectRoundTrip(
+        ReportId::Command,
+        Command{.sessionLow = 7, .sequence = 65535, .op = Op::Reboot, .arguments = arguments},
+        decodeCommand);
+    expectRoundTrip(ReportId::Ack,
+                    Ack{.sequence = 1,
+                        .op = Op::Resend,
+                        .status = 900,
+                        .retryMs = 65535,
+                        .result = arguments,
+                        .sessionLow = 0xFFFFFFFF},
+                    [](const Report& report) { return decodeAck(report); });
+    expectRoundTrip(
+        ReportId::Event,
+        Event{.sequence = 0xFFFFFFFF, .timeUs = ~0ULL, .code = 14, .arg0 = 1, .arg1 = 2},
+        decodeEvent);
+    expectRoundTrip(
+        ReportId::Session,
+        SessionSet{.sessionId = ~0ULL, .heartbeatMs = 10000, .hostMinor = 255, .release = true},
+        decodeSessionSet);
+}
+
+TEST(Reports, ADecoderNamesTheReportThatItRefuses) {
+    const auto refused = decodeLimits(encode(Stats{}));
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().kind, ErrorKind::Device);
+    EXPECT_FALSE(refused.error().message.empty());
+    EXPECT_FALSE(crcAgrees(Report{}));  // all zeros is no report: CCITT-FALSE starts at FFFF
+}
+
 }  // namespace
 }  // namespace gonio::driver
