@@ -3,6 +3,7 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <iomanip>
 #include <optional>
@@ -16,6 +17,9 @@ namespace gonio::daemon {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr double kLongestUs = 3.6e9;  // an hour
+constexpr std::string_view kIdealWhite = "1/pi";
 
 /// Reads keys of one file; remembers the first that is missing or out of its domain.
 class Keys {
@@ -32,23 +36,48 @@ public:
         if (!value || value->empty()) complain(key, "a text");
         return value.value_or("");
     }
-    std::vector<double> positives(std::string_view key) {
-        std::vector<double> values;
-        const toml::array* array = table_.at_path(key).as_array();
-        if (array != nullptr) {
-            for (const toml::node& node : *array) {
-                const auto value = node.value<double>();
-                if (value && *value > 0) values.push_back(*value);
-            }
-        }
-        if (array == nullptr || values.empty() || values.size() != array->size()) {
-            complain(key, "a list of numbers above 0");
+    /// Ascending.
+    std::vector<Microseconds> wholeMicroseconds(std::string_view key) {
+        std::vector<double> values = numbers(key);
+        std::sort(values.begin(), values.end());
+        std::vector<Microseconds> exposures;
+        for (double us : values) exposures.emplace_back(static_cast<std::int64_t>(us));
+        const bool whole = std::all_of(values.begin(), values.end(), [](double us) {
+            return us >= 1 && us <= kLongestUs && us == std::floor(us);
+        });
+        if (!whole || !differ(values)) complain(key, "a list of different whole numbers above 0");
+        return exposures;
+    }
+    /// Descending.
+    std::vector<double> fractions(std::string_view key) {
+        std::vector<double> values = numbers(key);
+        std::sort(values.rbegin(), values.rend());
+        const bool inside = std::all_of(
+            values.begin(), values.end(), [](double level) { return level > 0 && level < 1; });
+        if (!inside || !differ(values)) {
+            complain(key, "a list of different numbers between 0 and 1");
         }
         return values;
     }
     [[nodiscard]] const std::optional<Error>& error() const { return error_; }
 
 private:
+    std::vector<double> numbers(std::string_view key) {
+        std::vector<double> values;
+        const toml::array* array = table_.at_path(key).as_array();
+        if (array != nullptr) {
+            for (const toml::node& node : *array) {
+                if (const auto value = node.value<double>()) values.push_back(*value);
+            }
+        }
+        if (array == nullptr || values.empty() || values.size() != array->size()) {
+            complain(key, "a list of numbers");
+        }
+        return values;
+    }
+    static bool differ(const std::vector<double>& sorted) {
+        return std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
+    }
     void complain(std::string_view key, std::string_view wanted) {
         if (error_) return;
         error_ = Error{ErrorKind::File,
@@ -97,16 +126,13 @@ Result<RigProfile> readProfile(const fs::path& file) {
     profile.noise.readNoiseElectrons = keys.positive("sensor.read_noise_electrons");
     profile.noise.darkElectronsPerSecond = keys.positive("sensor.dark_electrons_per_second");
     profile.noise.fullScaleDn = keys.positive("sensor.full_scale_dn");
-    for (double us : keys.positives("bracket.exposures_us")) {
-        profile.exposures.emplace_back(static_cast<std::int64_t>(us));
-    }
-    profile.dimLevels = keys.positives("bracket.dim_levels");
-    profile.whiteReference = configDirectory() / keys.text("references.white");
+    profile.exposures = keys.wholeMicroseconds("bracket.exposures_us");
+    profile.dimLevels = keys.fractions("bracket.dim_levels");
+    const std::string white = keys.text("references.white");
+    if (white != kIdealWhite) profile.whiteReference = configDirectory() / white;
     profile.blackReflectance = keys.positive("references.black_reflectance");
     profile.blackRelativeUncertainty = keys.positive("references.black_relative_uncertainty");
     if (keys.error()) return *keys.error();
-    std::sort(profile.exposures.begin(), profile.exposures.end());
-    std::sort(profile.dimLevels.rbegin(), profile.dimLevels.rend());
     return profile;
 }
 

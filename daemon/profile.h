@@ -17,7 +17,7 @@ struct RigProfile {
     proc::SensorNoise noise;
     std::vector<Microseconds> exposures;  ///< ascending
     std::vector<double> dimLevels;        ///< fractions of full level, descending
-    std::filesystem::path whiteReference;
+    std::filesystem::path whiteReference;  ///< empty ("1/pi" in the file): without a table
     double blackReflectance = 0;
     double blackRelativeUncertainty = 0;
 };

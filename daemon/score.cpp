@@ -1,4 +1,4 @@
-#include "daemon/cli/score.h"
+#include "daemon/score.h"
 
 #include <algorithm>
 #include <cmath>

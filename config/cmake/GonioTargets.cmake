@@ -1,5 +1,7 @@
 # gonio_library(NAME SOURCES ... [PUBLIC libs] [PRIVATE libs]): the one target of a folder.
-# gonio_test(NAME LABEL label SOURCES ... LIBS ...): a GoogleTest program with one label.
+# gonio_test(NAME LABEL label SOURCES ... LIBS ... [TIMEOUT seconds]): a GoogleTest program with one
+# label. A label `run` takes all cores: its tests run alone.
+# gonio_program_test(...): likewise, for tests that run the `gonio` program (GONIO_PROGRAM).
 
 add_library(gonio_options INTERFACE)
 target_compile_options(gonio_options INTERFACE
@@ -33,12 +35,25 @@ function(gonio_library name)
 endfunction()
 
 function(gonio_test name)
-    cmake_parse_arguments(TEST "" "LABEL" "SOURCES;LIBS" ${ARGN})
+    cmake_parse_arguments(TEST "" "LABEL;TIMEOUT" "SOURCES;LIBS" ${ARGN})
+    if(NOT TEST_TIMEOUT)
+        set(TEST_TIMEOUT 120)
+    endif()
+    set(alone FALSE)
+    if(TEST_LABEL STREQUAL run)
+        set(alone TRUE)
+    endif()
     add_executable(${name} ${TEST_SOURCES})
     target_include_directories(${name} PRIVATE ${CMAKE_SOURCE_DIR})
     target_link_libraries(${name} PRIVATE ${TEST_LIBS} GTest::gtest_main gonio_options)
     target_compile_definitions(${name} PRIVATE
         GONIO_SOURCE_DIR="${CMAKE_SOURCE_DIR}" GONIO_DATA_DIR="${GONIO_DATA_DIR}")
     gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60
-        PROPERTIES LABELS "${TEST_LABEL}" TIMEOUT 120)
+        PROPERTIES LABELS "${TEST_LABEL}" TIMEOUT ${TEST_TIMEOUT} RUN_SERIAL ${alone})
+endfunction()
+
+function(gonio_program_test name)
+    gonio_test(${name} ${ARGN})
+    target_compile_definitions(${name} PRIVATE GONIO_PROGRAM="$<TARGET_FILE:gonio>")
+    add_dependencies(${name} gonio)
 endfunction()

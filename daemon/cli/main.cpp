@@ -1,6 +1,7 @@
 // The `gonio` program: reads the command line, calls one command, maps its error to an exit code.
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <functional>
 #include <iostream>
 
@@ -149,6 +150,18 @@ Program::Program() {
     addFiles();
 }
 
+/// What is wrong with the command line, in one line: a word that is no command is named, where the
+/// library only says that a command is missing.
+std::string complaint(const CLI::App& app, const CLI::ParseError& error) {
+    const std::vector<std::string> unknown = app.remaining(true);
+    std::string what = error.what();
+    if (error.get_name() == "RequiredError" && !unknown.empty()) {
+        what = "unknown command or option '" + unknown.front() + "'";
+    }
+    std::replace(what.begin(), what.end(), '\n', ' ');
+    return what + "; see gonio --help";
+}
+
 int run(int argc, char** argv) {
     Program program;
     try {
@@ -156,7 +169,7 @@ int run(int argc, char** argv) {
     } catch (const CLI::Success& success) {  // --help, --version
         return program.app.exit(success);
     } catch (const CLI::ParseError& error) {
-        std::cerr << "gonio: " << error.what() << "\nRun 'gonio --help' for the commands.\n";
+        std::cerr << "gonio: " << complaint(program.app, error) << "\n";
         return kUsage;
     }
     if (program.verbose) log::setLevel(log::Level::Info);

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/cli/commands.h"
-#include "daemon/cli/score.h"
 #include "daemon/material.h"
+#include "daemon/score.h"
 #include "daemon/sim_bench.h"
 #include "proc/core/number_text.h"
 #include "proc/formats/file_bytes.h"
@@ -39,6 +39,58 @@ std::vector<std::string> filesOf(const fs::path& gonio) {
     }
     std::sort(files.begin(), files.end());
     return files;
+}
+
+/// A measured sample held against its truth.
+struct Scored {
+    fs::path file;
+    proc::SampleInfo info;
+    Score score;
+};
+
+Result<Scored> scoreFile(const fs::path& file, const fs::path& store) {
+    const Result<proc::SampleSet> sample = proc::readGonio(file);
+    if (!sample) return sample.error();
+    if (sample->info.truthSpec.empty()) {
+        return Error{ErrorKind::Usage,
+                     file.string() + ": its truth is not known: it is not of a simulated rig"};
+    }
+    const Result<Material> truth = openMaterial(sample->info.truthSpec, store);
+    if (!truth) return truth.error();
+    return Scored{file, sample->info, score(*sample, *truth->scatterer)};
+}
+
+Json summaryOf(const std::vector<Scored>& scored) {
+    Json samples = Json::array();
+    std::int64_t seed = 0;
+    for (const auto& [file, info, score] : scored) {
+        if (const auto kept = info.extra.find("seed"); kept != info.extra.end()) {
+            seed = parseInteger(kept->second).value_or(0);
+        }
+        samples.push_back({{"name", info.name},
+                           {"rig_seconds", info.rigSeconds},
+                           {"compute_seconds", info.computeSeconds},
+                           {"median_relative_error", score.medianRelativeError},
+                           {"p95_relative_error", score.p95RelativeError},
+                           {"within_2u", score.within2u},
+                           {"within_2u_random", score.within2uRandom},
+                           {"cells", score.cells},
+                           {"files", filesOf(file)}});
+    }
+    return {{"schema", "gonio/quickstart/1"}, {"seed", seed}, {"samples", samples}};
+}
+
+void printTable(const std::vector<Scored>& scored) {
+    std::cout << padded("sample", 18) << padded("rig s", 8) << padded("compute s", 11)
+              << padded("median error", 14) << padded("95 % error", 12) << padded("within 2u", 11)
+              << "cells\n";
+    for (const auto& [file, info, score] : scored) {
+        std::cout << padded(info.name, 18) << padded(fixed(info.rigSeconds, 1), 8)
+                  << padded(fixed(info.computeSeconds, 1), 11)
+                  << padded(percent(score.medianRelativeError), 14)
+                  << padded(percent(score.p95RelativeError), 12)
+                  << padded(percent(score.within2u), 11) << score.cells << "\n";
+    }
 }
 
 }  // namespace
@@ -77,46 +129,18 @@ Result<void> simPlace(const CommonOptions& common, const PlaceOptions& options) 
 }
 
 Result<void> simScore(const CommonOptions& common, const ScoreOptions& options) {
-    Json samples = Json::array();
-    std::uint64_t seed = 0;
-    if (!common.json) {
-        std::cout << padded("sample", 18) << padded("rig s", 8) << padded("compute s", 11)
-                  << padded("median error", 14) << padded("95 % error", 12)
-                  << padded("within 2u", 11) << "cells\n";
-    }
+    std::vector<Scored> scored;
     for (const fs::path& file : options.files) {
-        const Result<proc::SampleSet> sample = proc::readGonio(file);
-        if (!sample) return sample.error();
-        const proc::SampleInfo& info = sample->info;
-        if (info.truthSpec.empty()) {
-            return Error{ErrorKind::Usage,
-                         file.string() + ": its truth is not known: it is not of a simulated rig"};
-        }
-        const Result<Material> truth = openMaterial(info.truthSpec, common.store);
-        if (!truth) return truth.error();
-        const Score result = score(*sample, *truth->scatterer);
-        if (info.extra.contains("seed")) {
-            seed = static_cast<std::uint64_t>(parseInteger(info.extra.at("seed")).value_or(0));
-        }
-        samples.push_back({{"name", info.name},
-                           {"rig_seconds", info.rigSeconds},
-                           {"compute_seconds", info.computeSeconds},
-                           {"median_relative_error", result.medianRelativeError},
-                           {"p95_relative_error", result.p95RelativeError},
-                           {"within_2u", result.within2u},
-                           {"within_2u_random", result.within2uRandom},
-                           {"cells", result.cells},
-                           {"files", filesOf(file)}});
-        if (!common.json) {
-            std::cout << padded(info.name, 18) << padded(fixed(info.rigSeconds, 1), 8)
-                      << padded(fixed(info.computeSeconds, 1), 11)
-                      << padded(percent(result.medianRelativeError), 14)
-                      << padded(percent(result.p95RelativeError), 12)
-                      << padded(percent(result.within2u), 11) << result.cells << "\n";
-        }
+        Result<Scored> one = scoreFile(file, common.store);
+        if (!one) return one.error();
+        scored.push_back(std::move(*one));
     }
-    const Json summary = {{"schema", "gonio/quickstart/1"}, {"seed", seed}, {"samples", samples}};
-    if (common.json) std::cout << summary.dump(2) << "\n";
+    const Json summary = summaryOf(scored);
+    if (common.json) {
+        std::cout << summary.dump(2) << "\n";
+    } else {
+        printTable(scored);
+    }
     if (options.output.empty()) return {};
     return proc::writeFile(options.output, summary.dump(2) + "\n");
 }

@@ -1,0 +1,163 @@
+// Bad input gets one clear line, the right exit code, in under a second and 100 MiB.
+
+#include <algorithm>
+
+#include "tests/daemon/cli/program.h"
+
+namespace gonio {
+namespace {
+
+using test::Ran;
+
+constexpr int kUsage = 2, kFile = 6, kQuality = 7;
+
+constexpr double kMebibytes = 100;
+constexpr double kSeconds = 1;
+
+/// One line on stderr that says all of `words`, nothing on stdout.
+void expectRefused(const Ran& ran, int exitCode, const std::vector<std::string>& words) {
+    EXPECT_EQ(ran.exitCode, exitCode) << ran.err;
+    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+    for (const std::string& word : words) {
+        EXPECT_NE(ran.err.find(word), std::string::npos) << word << " is not in: " << ran.err;
+    }
+    EXPECT_EQ(ran.out, "");
+    EXPECT_LT(ran.seconds, kSeconds);
+    EXPECT_LT(ran.mebibytes, kMebibytes);
+}
+
+const std::string kRealFile = GONIO_SOURCE_DIR "/config/demo/AnoBlackEC1onAlum.bsdf";
+
+class BadInput : public testing::Test {
+protected:
+    test::Program gonio;
+    std::string file(const std::string& name, const std::string& text) {
+        test::writeText(gonio / name, text);
+        return (gonio / name).string();
+    }
+};
+
+TEST_F(BadInput, MissingFileIsNamedByEveryCommandOnFiles) {
+    const std::string missing = (gonio / "none.bsdf").string();
+    const std::string points = file("points.csv", "theta_i,phi_i,theta_o,phi_o\n0,0,10,0\n");
+    expectRefused(gonio({"info", missing}), kFile, {missing, "no such file"});
+    expectRefused(gonio({"eval", missing, "--points", points}), kFile, {missing});
+    expectRefused(gonio({"convert", missing, (gonio / "o.csv").string()}), kFile, {missing});
+    expectRefused(gonio({"plot", missing}), kFile, {missing});
+    expectRefused(gonio({"sim", "place", missing}), kFile, {missing});
+    expectRefused(gonio({"sim", "score", missing}), kFile, {missing});
+    expectRefused(gonio({"eval", kRealFile, "--points", missing}), kFile, {missing});
+}
+
+TEST_F(BadInput, FolderIsNotAFile) {
+    expectRefused(gonio({"info", (gonio / ".").string()}), kFile, {"not a file"});
+}
+
+TEST_F(BadInput, TruncatedBsdfIsRefusedWithItsLine) {
+    const std::string whole = test::textOf(kRealFile);
+    for (const double share : {0.1, 0.5, 0.9, 0.999}) {
+        const auto size = static_cast<std::size_t>(share * static_cast<double>(whole.size()));
+        const std::string cut = file("cut.bsdf", whole.substr(0, size));
+        expectRefused(gonio({"info", cut}), kFile, {cut, "line "});
+    }
+}
+
+TEST_F(BadInput, BananaIsNoNumber) {
+    std::string text = test::textOf(kRealFile);
+    const std::size_t data = text.find("TIS");
+    ASSERT_NE(data, std::string::npos);
+    text.insert(text.find('\n', data) + 1, "banana ");
+    const std::string bsdf = file("banana.bsdf", text);
+    expectRefused(gonio({"info", bsdf}), kFile, {bsdf, "line ", "'banana'"});
+    const std::string points = file("points.csv", "theta_i,phi_i,theta_o,phi_o\n0,0,banana,0\n");
+    expectRefused(gonio({"eval", kRealFile, "--points", points}),
+                  kFile,
+                  {points, "line 2", "theta_o", "'banana'"});
+    expectRefused(gonio({"info", "model:lambert,albedo=banana"}), kUsage, {"albedo", "banana"});
+    expectRefused(gonio({"sim", "place", "white", "--tilt", "banana"}), kUsage, {"banana"});
+}
+
+TEST_F(BadInput, HostileHeaderCostsNoMemory) {
+    const std::string axis = " 999999999\n0 1\n";
+    const std::string bsdf = file("hostile.bsdf",
+                                  "Source Measured\nSymmetry PlaneSymmetrical\n"
+                                  "SpectralContent Monochrome\nScatterType BRDF\n"
+                                  "SampleRotation 1\n0\nAngleOfIncidence" +
+                                      axis + "ScatterAzimuth" + axis + "ScatterRadial" + axis +
+                                      "\nMonochrome\nDataBegin\nTIS 0\n");
+    expectRefused(gonio({"info", bsdf}), kFile, {bsdf, "line ", "AngleOfIncidence"});
+}
+
+TEST_F(BadInput, HugePromiseOfSmallAxesCostsNoMemory) {
+    std::string numbers;
+    for (int i = 0; i < 90; ++i) numbers += std::to_string(i) + " ";
+    const std::string axis = " 90\n" + numbers + "\n";
+    const std::string bsdf = file("promise.bsdf",
+                                  "Source Measured\nSymmetry PlaneSymmetrical\n"
+                                  "SpectralContent Monochrome\nScatterType BRDF\n"
+                                  "SampleRotation" +
+                                      axis + "AngleOfIncidence" + axis + "ScatterAzimuth" + axis +
+                                      "ScatterRadial" + axis + "\nMonochrome\nDataBegin\nTIS 0\n");
+    expectRefused(gonio({"info", bsdf}), kFile, {bsdf, "promises 65610000 values"});
+}
+
+TEST_F(BadInput, UnknownModelAndParameterListWhatIsKnown) {
+    expectRefused(gonio({"info", "model:lambret,albedo=0.5"}), kUsage, {"lambret", "lambert"});
+    expectRefused(gonio({"info", "model:lambert,albdo=0.5"}), kUsage, {"albedo"});
+    expectRefused(gonio({"info", "model:lambert,albedo=0.5,alpha=1"}), kUsage, {"alpha", "albedo"});
+    expectRefused(gonio({"info", "model:lambert"}), kUsage, {"albedo", "missing"});
+    expectRefused(gonio({"info", "model:lambert,albedo=1.5"}), kUsage, {"albedo=1.5", "[0, 1]"});
+    expectRefused(gonio({"info", "model:ggx,alpha=0,f0=1"}), kUsage, {"alpha=0"});
+    expectRefused(gonio({"info", "model:"}), kUsage, {"unknown model ''"});
+}
+
+TEST_F(BadInput, WrongCommandLinesAreUsageErrors) {
+    expectRefused(gonio({}), kUsage, {"--help"});
+    expectRefused(gonio({"mesure"}), kUsage, {"mesure"});
+    expectRefused(gonio({"info"}), kUsage, {"file"});
+    expectRefused(gonio({"info", kRealFile, "--colour"}), kUsage, {"--colour"});
+    expectRefused(gonio({"measure", "x", "--effort", "heroic"}), kUsage, {"heroic", "draft"});
+    expectRefused(gonio({"measure", "../x"}), kUsage, {"../x"});
+    expectRefused(gonio({"info", "sample:../../etc/passwd"}), kUsage, {"sample name"});
+    expectRefused(gonio({"sim", "place", "white", "--systematic", "some"}), kUsage, {"some"});
+}
+
+TEST_F(BadInput, UnknownFormatsAreNamed) {
+    const std::string out = (gonio / "o.xyz").string();
+    expectRefused(gonio({"convert", kRealFile, out}), kUsage, {"o.xyz", "--to"});
+    const std::string rgl = file("rgl.bsdf", std::string("tensor_file\0\1\0", 14));
+    expectRefused(gonio({"info", rgl}), kFile, {rgl, "RGL"});
+    const std::string noise = file("noise.gonio", "this is no OpenEXR file");
+    expectRefused(gonio({"info", noise}), kFile, {noise, "not an OpenEXR file"});
+}
+
+TEST_F(BadInput, OutputThatCannotBeWrittenIsNamed) {
+    const std::string nowhere = (gonio / "no/such/folder/o.bsdf").string();
+    const Ran ran = gonio({"convert", kRealFile, nowhere, "-q"});
+    expectRefused(ran, kFile, {nowhere});
+}
+
+TEST_F(BadInput, MeasuringBeforeCalibratingSaysWhatToRun) {
+    ASSERT_EQ(gonio({"sim", "place", "model:lambert,albedo=0.5", "-q"}).exitCode, 0);
+    expectRefused(gonio({"measure", "x"}), kQuality, {"gonio calibrate mirror"});
+    expectRefused(gonio({"calibrate", "white"}), kQuality, {"gonio calibrate mirror"});
+    expectRefused(gonio({"calibrate", "mirror"}), kQuality, {"gonio sim place mirror"});
+}
+
+TEST_F(BadInput, BrokenStoreIsNamed) {
+    ASSERT_EQ(gonio({"sim", "place", "white", "-q"}).exitCode, 0);
+    test::writeText(gonio / "store/sim.json", "{\"schema\":\"gonio/sim/1\",\"serial\":7}");
+    expectRefused(gonio({"sim", "place", "white"}), kFile, {"sim.json"});
+}
+
+TEST_F(BadInput, BrokenProfileIsNamedWithItsKey) {
+    const std::string profile = file("rig.toml", "name = \"x\"\n[sensor]\nelectrons_per_dn = -1\n");
+    expectRefused(gonio({"measure", "x", "--profile", profile}),
+                  kFile,
+                  {profile, "sensor.electrons_per_dn"});
+    const std::string torn = file("torn.toml", "name = \n");
+    expectRefused(gonio({"measure", "x", "--profile", torn}), kFile, {torn});
+}
+
+}  // namespace
+}  // namespace gonio

@@ -1,0 +1,188 @@
+// Whole measurements as a user makes them: calibrate, measure, look, export, on the simulated rig.
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tests/daemon/cli/program.h"
+
+namespace gonio {
+namespace {
+
+using Json = nlohmann::json;
+using test::Program;
+using test::Ran;
+
+const std::vector<std::string> kSamples{
+    GONIO_SOURCE_DIR "/config/demo/AnoBlackEC1onAlum.bsdf",
+    "model:oren-nayar,albedo=0.8,sigma=0.3",
+    "model:lambert,albedo=0.3/0.1/0.05+ggx,alpha=0.2,f0=0.04",
+    "model:ggx,alpha=0.05,f0=0.9/0.7/0.4",
+};
+
+class Bench {
+public:
+    /// Runs a command that must succeed; its JSON.
+    Json operator()(std::vector<std::string> arguments) const {
+        arguments.insert(arguments.begin(), "--json");
+        const Ran ran = program(arguments);
+        EXPECT_EQ(ran.exitCode, 0) << ran.err;
+        Json json = Json::parse(ran.out, nullptr, false);
+        EXPECT_FALSE(json.is_discarded()) << ran.out;
+        return json;
+    }
+    void calibrate(const std::string& systematic, int seed) const {
+        place("mirror", systematic, seed);
+        const Json mirror = (*this)({"calibrate", "mirror"});
+        EXPECT_EQ(mirror["schema"], "gonio/calibrate-mirror/1");
+        EXPECT_EQ(mirror["spots"], 20);
+        EXPECT_LT(mirror["rms_px"], 0.1);
+        place("black", systematic, seed);
+        (*this)({"calibrate", "black"});
+        place("white", systematic, seed);
+        const Json white = (*this)({"calibrate", "white"});
+        // 1 where noise alone differs between the exposures of a bracket: some 1e7 degrees of
+        // freedom, so that the spread is far below what is allowed for the noise model.
+        EXPECT_NEAR(white["chi_square_per_freedom"], 1, 0.01);
+    }
+    /// Measures all samples; the score of each.
+    [[nodiscard]] Json measureAll() const {
+        std::vector<std::string> score{"sim", "score"};
+        for (std::size_t i = 0; i < kSamples.size(); ++i) {
+            const std::string name = "s" + std::to_string(i);
+            (*this)({"sim", "place", kSamples[i]});
+            const Json measured = (*this)({"measure", name});
+            EXPECT_EQ(measured["schema"], "gonio/measure/1");
+            EXPECT_NEAR(measured["chi_square_per_freedom"], 1, 0.01);
+            score.push_back(measured["file"]);
+        }
+        return (*this)(score)["samples"];
+    }
+
+    Program program;
+
+private:
+    void place(const std::string& what, const std::string& systematic, int seed) const {
+        (*this)({"sim",
+                 "place",
+                 what,
+                 "--seed",
+                 std::to_string(seed),
+                 "--systematic",
+                 systematic,
+                 "--serial",
+                 "SIM-" + std::to_string(1000 + seed)});
+    }
+};
+
+/// The bounds on the error of one sample.
+void expectAccurate(const Json& sample) {
+    EXPECT_LE(sample["median_relative_error"], 0.015) << sample;
+    EXPECT_LE(sample["p95_relative_error"], 0.06) << sample;
+    EXPECT_GT(sample["cells"], 40'000) << sample;
+}
+
+/// A measured sample can be looked at, evaluated, exported and plotted, and says the same each time.
+void expectUsable(const Bench& gonio) {
+    const Json info = gonio({"info", "sample:s1"});
+    EXPECT_EQ(info["schema"], "gonio/info/1");
+    ASSERT_EQ(info["leds"].size(), 4U);
+    // At normal incidence Oren-Nayar is (albedo / pi) A, A = 1 - sigma^2 / (2 sigma^2 + 0.66); within
+    // 75 degrees lie sin^2(75) of its light. 0.2 % for noise and lens.
+    const double expected = 0.8 * (1 - 0.09 / 0.84) * std::pow(std::sin(75 * M_PI / 180), 2);
+    EXPECT_NEAR(
+        info["leds"][0]["g"]["reflected_fraction_within_measured"], expected, 0.002 * expected);
+    test::writeText(gonio.program / "points.csv",
+                    "theta_i,phi_i,theta_o,phi_o\n0,0,30,40\n20,0,30,40\n60,0,80,0\n20,0,95,0\n");
+    const Ran eval = gonio.program({"eval", "sample:s1", "--points", gonio.program / "points.csv"});
+    EXPECT_EQ(eval.exitCode, 0) << eval.err;
+    EXPECT_EQ(eval.out.find("theta_i,phi_i,theta_o,phi_o,f_r,f_g,f_b,u_r,u_g,u_b,flags,source\n"),
+              0U)
+        << eval.out;
+
+    const std::string bsdf = gonio.program / "s1.bsdf";
+    EXPECT_EQ(gonio({"convert", "sample:s1", bsdf})["files"].size(), 3U);
+    const Json zemax = gonio({"info", (gonio.program / "s1_G.bsdf").string()});
+    EXPECT_EQ(zemax["kind"], "zemax");
+    EXPECT_EQ(zemax["incidences_deg"], (std::vector<double>{0, 20, 40, 60}));
+    EXPECT_EQ(zemax["azimuths"], 361);
+    EXPECT_EQ(zemax["radials"], 181);
+
+    const std::string copy = gonio.program / "copy.gonio";
+    gonio({"convert", "sample:s1", copy});
+    EXPECT_EQ(test::textOf(copy), test::textOf(gonio.program / "store/samples/s1.gonio"));
+
+    const Json plots = gonio({"plot", "sample:s1", "-o", gonio.program / "plots"});
+    ASSERT_EQ(plots["files"].size(), 2U);
+    for (const std::string file : plots["files"]) {
+        EXPECT_EQ(test::textOf(file).find("<svg"), 0U) << file;
+    }
+}
+
+TEST(MeasureRun, WithoutSystematicErrorsNoiseExplainsTheRest) {
+    const Bench gonio;
+    gonio.calibrate("none", 1);
+    const Json samples = gonio.measureAll();
+    double inside = 0, cells = 0;
+    for (const Json& sample : samples) {
+        expectAccurate(sample);
+        const double count = sample["cells"];
+        inside += count * sample["within_2u_random"].get<double>();
+        cells += count;
+    }
+    EXPECT_GE(inside / cells, 0.94);
+    EXPECT_LE(inside / cells, 0.97);
+    expectUsable(gonio);
+}
+
+TEST(MeasureRun, SameSeedGivesTheSameBytes) {
+    const auto measured = [] {
+        const Bench gonio;
+        gonio.calibrate("random", 7);
+        gonio({"sim", "place", kSamples[2]});
+        gonio({"measure", "x", "--effort", "draft"});
+        const Ran csv = gonio.program({"convert", "sample:x", gonio.program / "x.csv", "-q"});
+        EXPECT_EQ(csv.exitCode, 0) << csv.err;
+        return test::textOf(gonio.program / "x.csv");
+    };
+    const std::string once = measured();
+    EXPECT_GT(once.size(), 1'000'000U);
+    EXPECT_EQ(once, measured());
+}
+
+/// Over 20 runs whose systematic errors are stratified, each component of the references takes each
+/// of its 20 quantiles once. A long study: it runs with GONIO_NIGHTLY only, and writes its table to
+/// $GONIO_COVERAGE_TABLE when that is set.
+TEST(CoverageRun, TwoStandardUncertaintiesHoldTheTruthOverStratifiedRuns) {
+    if (std::getenv("GONIO_NIGHTLY") == nullptr) GTEST_SKIP() << "a nightly study of 20 runs";
+    constexpr int kRuns = 20;
+    std::string table;
+    std::vector<double> sums(kSamples.size() + 1);
+    for (int run = 0; run < kRuns; ++run) {
+        const Bench gonio;
+        gonio.calibrate("stratum:" + std::to_string(run), 100 + run);
+        const Json samples = gonio.measureAll();
+        double inside = 0, cells = 0;
+        std::string row = "| " + std::to_string(run);
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            expectAccurate(samples[i]);
+            const double share = samples[i]["within_2u"];
+            const double count = samples[i]["cells"];
+            sums[i] += share / kRuns;
+            inside += share * count;
+            cells += count;
+            row += " | " + std::to_string(100 * share).substr(0, 5);
+        }
+        sums.back() += inside / cells / kRuns;
+        table += row + " | " + std::to_string(100 * inside / cells).substr(0, 5) + " |\n";
+    }
+    table += "| mean";
+    for (const double mean : sums) table += " | " + std::to_string(100 * mean).substr(0, 5);
+    table += " |\n";
+    std::cout << table;
+    if (const char* file = std::getenv("GONIO_COVERAGE_TABLE")) test::writeText(file, table);
+    EXPECT_GE(sums.back(), 0.93);
+    EXPECT_LE(sums.back(), 0.98);
+}
+
+}  // namespace
+}  // namespace gonio

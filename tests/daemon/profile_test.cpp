@@ -1,0 +1,137 @@
+#include "daemon/profile.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "daemon/references.h"
+#include "tests/support/temp_folder.h"
+
+namespace gonio::daemon {
+namespace {
+
+constexpr std::string_view kGood = R"(name = "bench"
+[sensor]
+electrons_per_dn = 2.6
+read_noise_electrons = 2.4
+dark_electrons_per_second = 3
+full_scale_dn = 4095
+[bracket]
+exposures_us = [320, 20, 80]
+dim_levels = [0.0025, 0.05]
+[references]
+white = "references/white-ptfe.csv"
+black_reflectance = 0.001
+black_relative_uncertainty = 0.10
+)";
+
+class Profile : public testing::Test {
+protected:
+    test::TempFolder folder;
+    Result<RigProfile> read(std::string_view text) {
+        std::ofstream(folder / "rig.toml") << text;
+        return readProfile(folder / "rig.toml");
+    }
+    static std::string without(std::string_view line) {
+        std::string text(kGood);
+        const std::size_t at = text.find(line);
+        EXPECT_NE(at, std::string::npos) << line;
+        text.erase(at, text.find('\n', at) - at);
+        return text;
+    }
+};
+
+TEST_F(Profile, SortsItsLadders) {
+    const auto profile = read(kGood);
+    ASSERT_TRUE(profile) << profile.error().message;
+    EXPECT_EQ(profile->name, "bench");
+    EXPECT_EQ(profile->exposures,
+              (std::vector{Microseconds(20), Microseconds(80), Microseconds(320)}));
+    EXPECT_EQ(profile->dimLevels, (std::vector{0.05, 0.0025}));
+    EXPECT_EQ(profile->noise.electronsPerDn, 2.6);
+    EXPECT_EQ(profile->blackReflectance, 0.001);
+}
+
+TEST_F(Profile, HashFollowsTheBytes) {
+    const auto one = read(kGood);
+    const auto two = read(std::string(kGood) + "# a comment\n");
+    ASSERT_TRUE(one && two);
+    EXPECT_EQ(one->hash.size(), 8U);
+    EXPECT_NE(one->hash, two->hash);
+    EXPECT_EQ(read(kGood)->hash, one->hash);
+}
+
+TEST_F(Profile, EveryKeyIsAskedForByName) {
+    for (const std::string key : {"name",
+                                  "electrons_per_dn",
+                                  "read_noise_electrons",
+                                  "dark_electrons_per_second",
+                                  "full_scale_dn",
+                                  "exposures_us",
+                                  "dim_levels",
+                                  "white",
+                                  "black_reflectance",
+                                  "black_relative_uncertainty"}) {
+        const auto profile = read(without(key));
+        ASSERT_FALSE(profile) << key;
+        EXPECT_EQ(profile.error().kind, ErrorKind::File);
+        EXPECT_NE(profile.error().message.find(key + "'"), std::string::npos)
+            << profile.error().message;
+    }
+}
+
+TEST_F(Profile, RefusesWhatIsOutOfItsDomain) {
+    for (const std::string bad : {"exposures_us = [20, -80]",
+                                  "exposures_us = []",
+                                  "exposures_us = [20, \"80\"]",
+                                  "exposures_us = [20.5]",
+                                  "exposures_us = [20, 20]",
+                                  "dim_levels = [1.5]",
+                                  "dim_levels = [1]"}) {
+        const std::string key = bad.substr(0, bad.find(' '));
+        std::string text = without(key);
+        text.insert(text.find("[bracket]\n") + 10, bad + "\n");
+        const auto profile = read(text);
+        ASSERT_FALSE(profile) << bad;
+        EXPECT_NE(profile.error().message.find(key), std::string::npos) << profile.error().message;
+    }
+}
+
+TEST(RigProfile, DefaultIsGoodAndItsReferencesOpen) {
+    const auto profile = readProfile(defaultProfile());
+    ASSERT_TRUE(profile) << profile.error().message;
+    EXPECT_TRUE(std::is_sorted(profile->exposures.begin(), profile->exposures.end()));
+    const auto references = loadReferences();
+    ASSERT_TRUE(references) << references.error().message;
+    // The certified white is PTFE: within a few per cent of 1/pi at normal incidence, 45 degrees.
+    const LightView pair{.in = Direction(), .out = Direction::fromSpherical(45_deg, 90_deg)};
+    EXPECT_NEAR(references->white->answer(pair).f[Band::G] * kPi, 1, 0.05);
+    EXPECT_NEAR(references->black->answer(pair).f[Band::G] * kPi, 0.001, 1e-12);
+    EXPECT_EQ(references->white->certificate().uCommon, 0.005);
+    EXPECT_EQ(references->white->certificate().uPerDirection, 0.003);
+    EXPECT_EQ(references->black->certificate().uCommon, 0.10);
+}
+
+TEST_F(Profile, WhiteWithoutATableIsAnOpenFallback) {
+    const auto profile = read(without("white") + "\nwhite = \"1/pi\"\n");
+    ASSERT_TRUE(profile) << profile.error().message;
+    const auto references = loadReferences(*profile);
+    ASSERT_TRUE(references) << references.error().message;
+    const LightView pair{.in = Direction::fromSpherical(60_deg, 0_deg), .out = Direction()};
+    EXPECT_DOUBLE_EQ(references->white->answer(pair).f[Band::B], 1 / kPi);
+    EXPECT_EQ(references->white->certificate().uCommon, 0.15);
+    EXPECT_NE(references->white->certificate().citation.find("without a table"), std::string::npos);
+}
+
+TEST(References, MissingWhiteIsNamed) {
+    RigProfile profile;
+    profile.whiteReference = "/no/such/white.csv";
+    const auto references = loadReferences(profile);
+    ASSERT_FALSE(references);
+    EXPECT_EQ(references.error().kind, ErrorKind::File);
+    EXPECT_NE(references.error().message.find("/no/such/white.csv"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace gonio::daemon

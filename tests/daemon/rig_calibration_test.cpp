@@ -1,0 +1,117 @@
+#include "daemon/rig_calibration.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "tests/support/temp_folder.h"
+
+namespace gonio::daemon {
+namespace {
+
+LensRecord lensRecord() {
+    Eigen::MatrixXd covariance = Eigen::MatrixXd::Identity(8, 8) * 1e-8;
+    covariance(0, 1) = covariance(1, 0) = 1e-9;
+    return {.fit = {.map = proc::LensMap({.centreX = 641.25,
+                                          .centreY = 508.5,
+                                          .rotation = 0.01,
+                                          .a = 1e-3,
+                                          .b = -2e-3,
+                                          .c1 = 1.32,
+                                          .c3 = 0.02,
+                                          .c5 = -0.003}),
+                    .covariance = covariance,
+                    .rmsPixels = 0.02,
+                    .worstPixels = 0.05},
+            .spots = 20,
+            .dateUtc = "2026-01-02T03:04:05Z"};
+}
+
+/// One LED whose cells hold their own number; the last cell is blocked.
+PlacementSignals signals() {
+    auto signal = proc::CellSignal::missing(proc::CellGrid::count());
+    for (std::size_t cell = 0; cell + 1 < signal.size(); ++cell) {
+        signal.signal[cell] = static_cast<double>(cell) - 5;
+        signal.variance[cell] = 4;
+        signal.nEff[cell] = 40;
+        signal.flags[cell] = Flags{Flag::Measured};
+    }
+    signal.flags.back() = Flags{Flag::Blocked};
+    return {{signal, signal, signal}};
+}
+
+TEST(LensRecord, SurvivesTheStoreToTheLastBit) {
+    const test::TempFolder folder;
+    const LensRecord lens = lensRecord();
+    ASSERT_TRUE(writeLens(folder / "rig", lens));
+    const auto read = readLens(folder / "rig");
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_EQ(read->fit.map.parameters(), lens.fit.map.parameters());
+    EXPECT_EQ(read->fit.covariance, lens.fit.covariance);
+    EXPECT_EQ(read->fit.rmsPixels, lens.fit.rmsPixels);
+    EXPECT_EQ(read->fit.worstPixels, lens.fit.worstPixels);
+    EXPECT_EQ(read->spots, lens.spots);
+    EXPECT_EQ(read->dateUtc, lens.dateUtc);
+}
+
+TEST(LensRecord, MissingAndBrokenOnesSayWhatToRun) {
+    const test::TempFolder folder;
+    const auto missing = readLens(folder.path());
+    ASSERT_FALSE(missing);
+    EXPECT_EQ(missing.error().kind, ErrorKind::Quality);
+    EXPECT_NE(missing.error().message.find("gonio calibrate mirror"), std::string::npos);
+
+    ASSERT_TRUE(writeLens(folder.path(), lensRecord()));
+    std::ofstream(folder / "lens.json") << R"({"schema":"gonio/lens/1","values":[1,2]})";
+    const auto broken = readLens(folder.path());
+    ASSERT_FALSE(broken);
+    EXPECT_EQ(broken.error().kind, ErrorKind::File);
+    EXPECT_NE(broken.error().message.find("gonio calibrate mirror"), std::string::npos);
+}
+
+TEST(LensRecord, FolderThatCannotBeMadeIsNamed) {
+    const test::TempFolder folder;
+    std::ofstream(folder / "file") << "x";
+    const auto written = writeLens(folder / "file", lensRecord());
+    ASSERT_FALSE(written);
+    EXPECT_EQ(written.error().kind, ErrorKind::Busy);
+}
+
+TEST(ReferenceRecord, SurvivesTheStoreToFloatPrecision) {
+    const test::TempFolder folder;
+    const PlacementSignals kept = signals();
+    const proc::SampleInfo info{.name = "white", .rigSerial = "SIM-0001"};
+    ASSERT_TRUE(writeSignals(folder / "rig", "white", info, {20_deg}, kept));
+    const auto read = readSignals(folder / "rig", "white");
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_EQ(read->info.rigSerial, "SIM-0001");
+    ASSERT_EQ(read->signals.size(), 1U);
+    for (Band band : kBands) {
+        const proc::CellSignal& a = kept[0][index(band)];
+        const proc::CellSignal& b = read->signals[0][index(band)];
+        ASSERT_EQ(b.size(), a.size());
+        for (std::size_t cell = 0; cell < a.size(); ++cell) {
+            ASSERT_EQ(b.flags[cell], a.flags[cell]);
+            if (!a.present(cell)) {
+                EXPECT_TRUE(std::isnan(b.signal[cell]) && std::isnan(b.variance[cell]));
+                continue;
+            }
+            // All of these fit a float: whole numbers below 2^24 and 2 = sqrt(4).
+            ASSERT_EQ(b.signal[cell], a.signal[cell]);
+            ASSERT_EQ(b.variance[cell], a.variance[cell]);
+            ASSERT_EQ(b.nEff[cell], a.nEff[cell]);
+        }
+    }
+}
+
+TEST(ReferenceRecord, MissingOneSaysWhatToRun) {
+    const test::TempFolder folder;
+    const auto read = readSignals(folder.path(), "black");
+    ASSERT_FALSE(read);
+    EXPECT_EQ(read.error().kind, ErrorKind::Quality);
+    EXPECT_NE(read.error().message.find("gonio calibrate black"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace gonio::daemon
