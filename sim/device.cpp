@@ -506,13 +506,27 @@ void Device::resetStream() { flush(); }
 void Device::checkHeartbeat() {
     if (session_.owner != Owner::Alive || now_ - session_.lastCommandAt < session_.heartbeat)
         return;
-    session_.owner = Owner::Lapsed;
-    ++stats_.lapses;
-    abort(status::kHeartbeat);
-    flush();
+    lapse(status::kHeartbeat);
     raise(event::kHeartbeatLost,
           static_cast<std::uint32_t>((now_ - session_.lastCommandAt).count() / 1'000'000),
           static_cast<std::uint32_t>(session_.id));
+    pushStatus();
+}
+
+/// Control is lost: dark, and what the rig was doing ends. Frame RAM and ACKs stay.
+void Device::lapse(std::uint16_t reason) {
+    if (session_.owner == Owner::Alive) {
+        session_.owner = Owner::Lapsed;
+        ++stats_.lapses;
+    }
+    abort(reason);
+    flush();
+}
+
+void Device::linkLost() {
+    constexpr std::uint32_t kBusReset = 1;
+    lapse(status::kLink);
+    raise(event::kLinkLost, kBusReset, 0);
     pushStatus();
 }
 
@@ -550,8 +564,7 @@ const RateImages& Device::rates(int led) {
     }
     const auto found = rates_.find(led);
     if (found != rates_.end()) return found->second;
-    return rates_
-        .emplace(led, rateImages(placement_, config_.errors, optics_, *field_, led))
+    return rates_.emplace(led, rateImages(placement_, config_.errors, optics_, *field_, led))
         .first->second;
 }
 

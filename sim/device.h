@@ -43,6 +43,8 @@ public:
     [[nodiscard]] std::optional<driver::Report> takeInput();
     [[nodiscard]] std::optional<std::vector<std::uint8_t>> takeBulk();
     void resetStream();
+    /// Bus reset, configuration or VBUS loss: dark, aborted, flushed, and the session lapses.
+    void linkLost();
 
     /// Lets time pass to `now`: exposures, status reports, the heartbeat's watch.
     void advanceTo(Nanoseconds now);
@@ -110,6 +112,7 @@ private:
 
     void claimOrRelease(const driver::SessionSet& set);
     void checkHeartbeat();
+    void lapse(std::uint16_t reason);
     void beginExposureIfDue();
     void finishExposure();
     void queueFrame(const Exposing& exposing, int index);

@@ -1,0 +1,66 @@
+#pragma once
+// Finds rigs among the USB devices, and opens one: its handle, its strings, its stream interface
+// claimed. libusb's own header stays in the source files.
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "driver/usb_transport.h"
+
+struct libusb_context;
+struct libusb_device;
+struct libusb_device_handle;
+
+namespace gonio::driver {
+
+struct UsbFree {
+    void operator()(libusb_context* context) const;
+    void operator()(libusb_device* device) const;
+    void operator()(libusb_device_handle* handle) const;
+};
+using UsbContext = std::unique_ptr<libusb_context, UsbFree>;
+using UsbDeviceRef = std::unique_ptr<libusb_device, UsbFree>;
+using UsbHandle = std::unique_ptr<libusb_device_handle, UsbFree>;
+
+/// Where the descriptors say that the two halves of a rig are.
+struct RigInterfaces {
+    int hid = -1;
+    int stream = -1;
+    std::uint8_t bulkIn = 0;
+    std::size_t packet = 0;  ///< bytes of the bulk endpoint
+    [[nodiscard]] bool complete() const { return hid >= 0 && stream >= 0 && packet > 0; }
+};
+
+struct FoundRig {
+    UsbDeviceRef device;
+    RigInterfaces interfaces;
+    UsbRig rig;
+};
+
+struct OpenedRig {
+    UsbHandle handle;
+    RigInterfaces interfaces;
+    DeviceStrings strings;
+};
+
+/// A fresh one each time: without udev an old context never sees what was plugged in later.
+[[nodiscard]] Result<UsbContext> makeUsbContext();
+/// Devices of the wanted ids that have a rig's interfaces, and the wanted serial where it is known.
+[[nodiscard]] Result<std::vector<FoundRig>> findRigs(libusb_context* context,
+                                                     const UsbSelection& wanted);
+/// Opens and reads the strings; claims nothing yet.
+[[nodiscard]] Result<OpenedRig> openRig(const FoundRig& found);
+/// Takes the stream interface, from a kernel driver too.
+Result<void> claimStream(const OpenedRig& rig);
+
+/// What libusb's code means for a person who tried `what`.
+[[nodiscard]] Error usbError(int code, const std::string& what);
+/// The udev rule that lets a user at this computer use rigs of these ids.
+[[nodiscard]] std::string permissionCure(std::uint16_t vendor, std::uint16_t product);
+/// "1209:0001".
+[[nodiscard]] std::string idText(std::uint16_t vendor, std::uint16_t product);
+
+}  // namespace gonio::driver

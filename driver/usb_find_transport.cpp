@@ -1,0 +1,184 @@
+#include <libusb.h>
+
+#include <array>
+#include <fstream>
+
+#include "driver/usb_find.h"
+
+namespace gonio::driver {
+namespace {
+
+constexpr unsigned kControlMs = 500;
+constexpr std::uint8_t kProtocolString = 240;
+constexpr std::uint8_t kStreamSubClass = 0x47, kStreamProtocol = 0x01;
+
+std::string hex4(std::uint16_t value) {
+    constexpr const char* kDigits = "0123456789abcdef";
+    std::string text;
+    for (int shift = 12; shift >= 0; shift -= 4) text += kDigits[value >> shift & 0xF];
+    return text;
+}
+
+/// "1-2.4", as sysfs names it.
+std::string placeOf(libusb_device* device) {
+    std::array<std::uint8_t, 8> ports{};
+    const int depth = libusb_get_port_numbers(device, ports.data(), static_cast<int>(ports.size()));
+    std::string place = std::to_string(libusb_get_bus_number(device));
+    for (int i = 0; i < depth; ++i) {
+        place += (i == 0 ? "-" : ".") + std::to_string(ports[static_cast<std::size_t>(i)]);
+    }
+    return place;
+}
+
+/// The kernel's copy of the serial number, which needs no permission to read.
+std::string knownSerial(const std::string& place) {
+    std::ifstream file("/sys/bus/usb/devices/" + place + "/serial");
+    std::string serial;
+    std::getline(file, serial);
+    return serial;
+}
+
+RigInterfaces interfacesOf(const libusb_config_descriptor& config) {
+    RigInterfaces found;
+    for (int i = 0; i < config.bNumInterfaces; ++i) {
+        const libusb_interface& interface = config.interface[i];
+        if (interface.num_altsetting < 1) continue;
+        const libusb_interface_descriptor& main = interface.altsetting[0];
+        if (main.bInterfaceClass == LIBUSB_CLASS_HID) found.hid = main.bInterfaceNumber;
+        if (main.bInterfaceClass != LIBUSB_CLASS_VENDOR_SPEC ||
+            main.bInterfaceSubClass != kStreamSubClass ||
+            main.bInterfaceProtocol != kStreamProtocol)
+            continue;
+        for (int e = 0; e < main.bNumEndpoints; ++e) {
+            const libusb_endpoint_descriptor& endpoint = main.endpoint[e];
+            const bool in = (endpoint.bEndpointAddress & LIBUSB_ENDPOINT_IN) != 0;
+            if (!in || (endpoint.bmAttributes & 3) != LIBUSB_TRANSFER_TYPE_BULK) continue;
+            found.stream = main.bInterfaceNumber;
+            found.bulkIn = endpoint.bEndpointAddress;
+            found.packet = endpoint.wMaxPacketSize & 0x7FFU;
+        }
+    }
+    return found;
+}
+
+RigInterfaces interfacesOf(libusb_device* device) {
+    libusb_config_descriptor* config = nullptr;
+    if (libusb_get_active_config_descriptor(device, &config) != 0) return {};
+    const RigInterfaces found = interfacesOf(*config);
+    libusb_free_config_descriptor(config);
+    return found;
+}
+
+std::string stringOf(libusb_device_handle* handle, std::uint8_t index) {
+    constexpr std::uint16_t kEnglish = 0x0409;
+    std::array<std::uint8_t, 255> raw{};
+    const int n = libusb_control_transfer(handle,
+                                          LIBUSB_ENDPOINT_IN,
+                                          LIBUSB_REQUEST_GET_DESCRIPTOR,
+                                          static_cast<std::uint16_t>(LIBUSB_DT_STRING << 8 | index),
+                                          kEnglish,
+                                          raw.data(),
+                                          static_cast<std::uint16_t>(raw.size()),
+                                          kControlMs);
+    if (n < 2 || raw[0] < 2 || raw[1] != LIBUSB_DT_STRING) return {};
+    std::string text;
+    for (std::size_t i = 2; i + 1 < std::min<std::size_t>(raw[0], static_cast<std::size_t>(n));
+         i += 2) {
+        text += raw[i + 1] == 0 && raw[i] < 0x80 ? static_cast<char>(raw[i]) : '?';
+    }
+    return text;
+}
+
+}  // namespace
+
+void UsbFree::operator()(libusb_context* context) const { libusb_exit(context); }
+void UsbFree::operator()(libusb_device* device) const { libusb_unref_device(device); }
+void UsbFree::operator()(libusb_device_handle* handle) const { libusb_close(handle); }
+
+std::string idText(std::uint16_t vendor, std::uint16_t product) {
+    return hex4(vendor) + ":" + hex4(product);
+}
+
+std::string permissionCure(std::uint16_t vendor, std::uint16_t product) {
+    return "put the line SUBSYSTEMS==\"usb\", ATTRS{idVendor}==\"" + hex4(vendor) +
+           "\", ATTRS{idProduct}==\"" + hex4(product) +
+           "\", TAG+=\"uaccess\" into /etc/udev/rules.d/70-gonio.rules and plug the rig in again";
+}
+
+Error usbError(int code, const std::string& what) {
+    const std::string seen = what + ": " + libusb_error_name(code);
+    switch (code) {
+        case LIBUSB_ERROR_ACCESS: return {ErrorKind::Busy, seen + " (no permission)"};
+        case LIBUSB_ERROR_BUSY:
+            return {ErrorKind::Busy, seen + " (claimed by another program: close it)"};
+        case LIBUSB_ERROR_NO_DEVICE:
+            return {ErrorKind::Device, seen + " (it is gone; check its cable and power)"};
+        default: return {ErrorKind::Device, seen};
+    }
+}
+
+Result<UsbContext> makeUsbContext() {
+    libusb_context* context = nullptr;
+    const int code = libusb_init(&context);
+    if (code != 0) return usbError(code, "start libusb");
+    return UsbContext(context);
+}
+
+Result<std::vector<FoundRig>> findRigs(libusb_context* context, const UsbSelection& wanted) {
+    libusb_device** list = nullptr;
+    const auto count = libusb_get_device_list(context, &list);
+    if (count < 0) return usbError(static_cast<int>(count), "list USB devices");
+    std::vector<FoundRig> rigs;
+    for (auto i = decltype(count){0}; i < count; ++i) {
+        UsbDeviceRef device(list[i]);
+        libusb_device_descriptor descriptor{};
+        if (libusb_get_device_descriptor(device.get(), &descriptor) != 0) continue;
+        if (descriptor.idVendor != wanted.vendor || descriptor.idProduct != wanted.product)
+            continue;
+        const RigInterfaces interfaces = interfacesOf(device.get());
+        if (!interfaces.complete()) continue;
+        const std::string place = placeOf(device.get());
+        const std::string serial = knownSerial(place);
+        if (wanted.serial && !serial.empty() && serial != *wanted.serial) continue;
+        rigs.push_back({.device = std::move(device),
+                        .interfaces = interfaces,
+                        .rig = {.vendor = descriptor.idVendor,
+                                .product = descriptor.idProduct,
+                                .serial = serial,
+                                .place = place,
+                                .protocol = {},
+                                .obstacle = {}}});
+    }
+    libusb_free_device_list(list, 0);
+    return rigs;
+}
+
+Result<OpenedRig> openRig(const FoundRig& found) {
+    const UsbRig& rig = found.rig;
+    libusb_device_handle* raw = nullptr;
+    const int code = libusb_open(found.device.get(), &raw);
+    if (code != 0) {
+        Error error = usbError(code, "open rig " + rig.serial + " at " + rig.place);
+        if (code == LIBUSB_ERROR_ACCESS)
+            error.message += ": " + permissionCure(rig.vendor, rig.product);
+        return error;
+    }
+    OpenedRig opened{.handle = UsbHandle(raw), .interfaces = found.interfaces, .strings = {}};
+    libusb_device_descriptor descriptor{};
+    (void)libusb_get_device_descriptor(found.device.get(), &descriptor);  // cached: cannot fail
+    opened.strings = {.vendor = rig.vendor,
+                      .product = rig.product,
+                      .serial = stringOf(raw, descriptor.iSerialNumber),
+                      .protocol = stringOf(raw, kProtocolString)};
+    return opened;
+}
+
+Result<void> claimStream(const OpenedRig& rig) {
+    // Not supported on a system without kernel drivers to detach: then there is nothing to do.
+    (void)libusb_set_auto_detach_kernel_driver(rig.handle.get(), 1);
+    const int code = libusb_claim_interface(rig.handle.get(), rig.interfaces.stream);
+    if (code != 0) return usbError(code, "claim the stream of rig " + rig.strings.serial);
+    return {};
+}
+
+}  // namespace gonio::driver

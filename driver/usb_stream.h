@@ -1,0 +1,98 @@
+#pragma once
+// The bulk stream of an opened rig: a ring of transfers in flight and the thread that serves it.
+// The ring holds at most 2 MiB; when the system refuses memory it is halved, down to two transfers.
+// Nothing is allocated after start() but the chunks that read() hands out. A transfer that nobody
+// has read is not in flight: a slow reader holds the rig back and loses nothing.
+// STALL: all transfers are drained, the halt is cleared, and the stream goes on; OVERFLOW: that
+// chunk is dropped; ERROR: one control request decides whether the rig is still there. A third
+// stall or error in ten seconds is a failure, and a failure is final.
+
+#include <array>
+#include <condition_variable>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "driver/usb_find.h"
+
+struct libusb_transfer;
+
+namespace gonio::driver {
+
+/// What the stream had to cope with since it began.
+struct StreamCounters {
+    int stalls = 0;
+    int overflows = 0;
+    int errors = 0;
+    int ring = 0;  ///< transfers that may be in flight
+};
+
+class UsbStream : public std::enable_shared_from_this<UsbStream> {
+public:
+    UsbStream(UsbContext context, OpenedRig rig);
+    ~UsbStream();
+    UsbStream(const UsbStream&) = delete;
+    UsbStream& operator=(const UsbStream&) = delete;
+
+    /// Fills the ring with transfers that each hold a chunk of `maxChunkPayload` bytes.
+    Result<void> start(std::size_t maxChunkPayload);
+    [[nodiscard]] Result<std::optional<std::vector<std::uint8_t>>> read(Nanoseconds wait);
+    /// SET_INTERFACE(stream, 0): drops what has come.
+    Result<void> reset();
+    /// Asks the thread to end, and waits for it until `deadline`; a thread that is stuck in the
+    /// kernel then keeps this object alive by itself.
+    void askToStop();
+    void awaitStop(std::chrono::steady_clock::time_point deadline);
+
+    [[nodiscard]] const DeviceStrings& strings() const { return rig_.strings; }
+    [[nodiscard]] std::optional<Error> failure() const;
+    [[nodiscard]] StreamCounters counters() const;
+    /// A transfer has ended. Called by libusb, on the thread of the stream.
+    void ended(libusb_transfer& transfer);
+
+private:
+    enum class Place {
+        Idle,
+        InFlight,
+        Ready
+    };
+    struct Slot {
+        libusb_transfer* transfer = nullptr;
+        std::vector<std::uint8_t> buffer;
+        Place place = Place::Idle;
+    };
+
+    void serve();
+    void handleEvents(int milliseconds);
+    [[nodiscard]] bool drain();
+    void recover(bool stalled);
+    void doReset();
+    [[nodiscard]] bool stillThere();
+    bool tooOften();
+    // With the mutex held:
+    void submitIdle();
+    void shrink();
+    [[nodiscard]] std::string memoryHint() const;
+    void fail(Error error);
+    [[nodiscard]] int busy() const;
+
+    UsbContext context_;
+    OpenedRig rig_;
+    std::thread thread_;
+
+    mutable std::mutex mutex_;
+    std::condition_variable changed_;
+    std::vector<Slot> slots_;
+    std::vector<std::size_t> ready_;  ///< slots with a chunk, oldest first
+    StreamCounters counters_;
+    int inFlight_ = 0;
+    bool holding_ = true;  ///< nothing is submitted: before start, while draining, after the end
+    bool stalled_ = false, suspect_ = false, resetWanted_ = false;
+    bool stopping_ = false, finished_ = false, warned_ = false;
+    std::optional<Result<void>> resetDone_;
+    std::optional<Error> failure_;
+    std::array<std::chrono::steady_clock::time_point, 2> faults_{};  ///< the last two
+};
+
+}  // namespace gonio::driver

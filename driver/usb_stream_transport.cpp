@@ -1,0 +1,317 @@
+#include <libusb.h>
+
+#include <algorithm>
+
+#include "driver/protocol/chunk.h"
+#include "driver/usb_stream.h"
+#include "proc/core/log.h"
+
+namespace gonio::driver {
+namespace {
+
+using namespace std::chrono_literals;
+using SteadyTime = std::chrono::steady_clock::time_point;
+
+constexpr std::size_t kMostInFlight = std::size_t{2} << 20;  // PROTOCOL.md 3
+constexpr int kFewest = 2;
+constexpr auto kDrainLimit = 500ms;
+constexpr auto kResetLimit = 1s;
+constexpr auto kFaultSpan = 10s;  // PROTOCOL.md 4: three stalls in it are a fault
+constexpr unsigned kProbeMs = 200;
+
+SteadyTime steadyNow() { return std::chrono::steady_clock::now(); }
+
+void LIBUSB_CALL transferEnded(libusb_transfer* transfer) {
+    static_cast<UsbStream*>(transfer->user_data)->ended(*transfer);
+}
+
+/// A chunk rounded up to packets, and one packet: the packet that ends it never stands alone.
+std::size_t bufferBytes(std::size_t maxChunkPayload, std::size_t packet) {
+    const std::size_t chunk = kChunkHeaderBytes + maxChunkPayload;
+    return ((chunk + packet - 1) / packet + 1) * packet;
+}
+
+}  // namespace
+
+UsbStream::UsbStream(UsbContext context, OpenedRig rig)
+    : context_(std::move(context)), rig_(std::move(rig)) {}
+
+UsbStream::~UsbStream() {
+    if (inFlight_ > 0) {
+        // The kernel may still write into these buffers: better a leak than that.
+        (void)std::make_unique<std::vector<Slot>>(std::move(slots_)).release();
+        (void)rig_.handle.release();
+        (void)context_.release();
+        return;
+    }
+    for (Slot& slot : slots_) libusb_free_transfer(slot.transfer);
+    (void)libusb_release_interface(rig_.handle.get(), rig_.interfaces.stream);
+}
+
+Result<void> UsbStream::start(std::size_t maxChunkPayload) {
+    const std::size_t bytes = bufferBytes(maxChunkPayload, rig_.interfaces.packet);
+    slots_.resize(std::max<std::size_t>(kFewest, kMostInFlight / bytes));
+    ready_.reserve(slots_.size());
+    for (Slot& slot : slots_) {
+        slot.buffer.resize(bytes);
+        slot.transfer = libusb_alloc_transfer(0);
+        if (!slot.transfer) return usbError(LIBUSB_ERROR_NO_MEM, "start the stream");
+        libusb_fill_bulk_transfer(slot.transfer,
+                                  rig_.handle.get(),
+                                  rig_.interfaces.bulkIn,
+                                  slot.buffer.data(),
+                                  static_cast<int>(bytes),
+                                  transferEnded,
+                                  this,
+                                  0);
+    }
+    std::unique_lock lock(mutex_);
+    counters_.ring = static_cast<int>(slots_.size());
+    holding_ = false;
+    submitIdle();
+    if (inFlight_ == 0 && !failure_) fail({ErrorKind::Device, memoryHint()});
+    // Also after a failure: what was submitted must be taken back.
+    thread_ = std::thread([self = shared_from_this()] { self->serve(); });
+    if (failure_) return *failure_;
+    return {};
+}
+
+// ---- what the caller's thread does
+
+Result<std::optional<std::vector<std::uint8_t>>> UsbStream::read(Nanoseconds wait) {
+    std::unique_lock lock(mutex_);
+    changed_.wait_until(lock, steadyNow() + wait, [&] { return !ready_.empty() || failure_; });
+    if (ready_.empty()) {
+        if (failure_) return *failure_;
+        submitIdle();  // what the system had no memory for before
+        return std::optional<std::vector<std::uint8_t>>{};
+    }
+    Slot& slot = slots_[ready_.front()];
+    const auto length = static_cast<std::size_t>(slot.transfer->actual_length);
+    std::vector<std::uint8_t> chunk(slot.buffer.begin(),
+                                    slot.buffer.begin() + static_cast<std::ptrdiff_t>(length));
+    ready_.erase(ready_.begin());
+    slot.place = Place::Idle;
+    submitIdle();
+    return std::optional(std::move(chunk));
+}
+
+Result<void> UsbStream::reset() {
+    std::unique_lock lock(mutex_);
+    if (failure_) return *failure_;
+    resetWanted_ = true;
+    resetDone_.reset();
+    lock.unlock();
+    libusb_interrupt_event_handler(context_.get());
+    lock.lock();
+    changed_.wait_until(lock, steadyNow() + kResetLimit, [&] { return resetDone_ || failure_; });
+    if (resetDone_) return *resetDone_;
+    if (!failure_) fail({ErrorKind::Device, "rig " + strings().serial + " does not answer"});
+    return *failure_;
+}
+
+void UsbStream::askToStop() {
+    {
+        std::unique_lock lock(mutex_);
+        stopping_ = true;
+        holding_ = true;
+    }
+    libusb_interrupt_event_handler(context_.get());
+}
+
+void UsbStream::awaitStop(SteadyTime deadline) {
+    if (!thread_.joinable()) return;
+    std::unique_lock lock(mutex_);
+    const bool ended = changed_.wait_until(lock, deadline, [&] { return finished_; });
+    lock.unlock();
+    if (ended) {
+        thread_.join();
+    } else {
+        log::warning("rig " + strings().serial + ": its stream does not end; it is left behind");
+        thread_.detach();
+    }
+}
+
+std::optional<Error> UsbStream::failure() const {
+    std::unique_lock lock(mutex_);
+    return failure_;
+}
+
+StreamCounters UsbStream::counters() const {
+    std::unique_lock lock(mutex_);
+    return counters_;
+}
+
+// ---- what the stream's own thread does
+
+void UsbStream::serve() {
+    while (true) {
+        handleEvents(100);
+        std::unique_lock lock(mutex_);
+        if (stopping_) break;
+        const bool stalled = std::exchange(stalled_, false);
+        const bool suspect = std::exchange(suspect_, false);
+        const bool wanted = std::exchange(resetWanted_, false);
+        if (failure_) continue;
+        lock.unlock();
+        if (stalled || suspect) recover(stalled);
+        if (wanted) doReset();
+    }
+    (void)drain();
+    std::unique_lock lock(mutex_);
+    finished_ = true;
+    changed_.notify_all();
+}
+
+void UsbStream::handleEvents(int milliseconds) {
+    timeval wait{.tv_sec = 0, .tv_usec = milliseconds * 1000};
+    const int code = libusb_handle_events_timeout_completed(context_.get(), &wait, nullptr);
+    if (code == 0 || code == LIBUSB_ERROR_INTERRUPTED) return;
+    std::unique_lock lock(mutex_);
+    fail(usbError(code, "wait for rig " + strings().serial));
+    changed_.wait_for(lock, std::chrono::milliseconds(milliseconds), [&] { return stopping_; });
+}
+
+void UsbStream::ended(libusb_transfer& transfer) {
+    std::unique_lock lock(mutex_);
+    const auto found = std::find_if(
+        slots_.begin(), slots_.end(), [&](const Slot& slot) { return slot.transfer == &transfer; });
+    Slot& slot = *found;  // only our own transfers end here
+    --inFlight_;
+    slot.place = Place::Idle;
+    switch (transfer.status) {
+        case LIBUSB_TRANSFER_COMPLETED:
+            slot.place = Place::Ready;
+            ready_.push_back(static_cast<std::size_t>(found - slots_.begin()));
+            changed_.notify_all();
+            break;
+        case LIBUSB_TRANSFER_STALL: stalled_ = true; break;
+        case LIBUSB_TRANSFER_OVERFLOW:
+            ++counters_.overflows;
+            submitIdle();
+            break;
+        case LIBUSB_TRANSFER_NO_DEVICE:
+            fail(usbError(LIBUSB_ERROR_NO_DEVICE, "read from rig " + strings().serial));
+            break;
+        case LIBUSB_TRANSFER_CANCELLED: break;
+        case LIBUSB_TRANSFER_ERROR:
+        case LIBUSB_TRANSFER_TIMED_OUT: suspect_ = true; break;
+    }
+    if (stalled_ || suspect_) holding_ = true;
+}
+
+/// Takes all transfers back. False: the kernel does not give them.
+bool UsbStream::drain() {
+    {
+        std::unique_lock lock(mutex_);
+        holding_ = true;
+        for (Slot& slot : slots_) {
+            if (slot.place == Place::InFlight) (void)libusb_cancel_transfer(slot.transfer);
+        }
+    }
+    const SteadyTime deadline = steadyNow() + kDrainLimit;
+    const auto left = [this] {
+        std::unique_lock lock(mutex_);
+        return inFlight_;
+    };
+    while (left() > 0 && steadyNow() < deadline) handleEvents(20);
+    return left() == 0;
+}
+
+/// PROTOCOL.md 4: a stall is cleared; after an error one control request decides.
+void UsbStream::recover(bool stalled) {
+    const bool drained = drain();
+    const bool there = stalled || stillThere();
+    const int cleared = stalled ? libusb_clear_halt(rig_.handle.get(), rig_.interfaces.bulkIn) : 0;
+    const bool again = tooOften();
+    std::unique_lock lock(mutex_);
+    ++(stalled ? counters_.stalls : counters_.errors);
+    // Those that ended while the others were drained tell nothing new.
+    stalled_ = suspect_ = false;
+    const std::string name = "rig " + strings().serial;
+    if (!there) return fail(usbError(LIBUSB_ERROR_NO_DEVICE, "read from " + name));
+    if (!drained) return fail({ErrorKind::Device, name + ": its transfers do not come back"});
+    if (cleared != 0) return fail(usbError(cleared, "clear the halt of " + name));
+    if (again) return fail({ErrorKind::Device, name + ": its stream failed three times in 10 s"});
+    holding_ = stopping_;
+    submitIdle();
+}
+
+void UsbStream::doReset() {
+    const bool drained = drain();
+    const int code = libusb_set_interface_alt_setting(rig_.handle.get(), rig_.interfaces.stream, 0);
+    std::unique_lock lock(mutex_);
+    stalled_ = suspect_ = false;
+    for (const std::size_t i : ready_) slots_[i].place = Place::Idle;
+    ready_.clear();
+    if (!drained || code != 0) {
+        fail(usbError(code != 0 ? code : LIBUSB_ERROR_IO, "reset the stream"));
+        return;
+    }
+    holding_ = stopping_;
+    submitIdle();
+    resetDone_.emplace();
+    changed_.notify_all();
+}
+
+bool UsbStream::stillThere() {
+    std::array<std::uint8_t, 2> status{};
+    return libusb_control_transfer(rig_.handle.get(),
+                                   LIBUSB_ENDPOINT_IN,
+                                   LIBUSB_REQUEST_GET_STATUS,
+                                   0,
+                                   0,
+                                   status.data(),
+                                   static_cast<std::uint16_t>(status.size()),
+                                   kProbeMs) == static_cast<int>(status.size());
+}
+
+bool UsbStream::tooOften() {
+    const SteadyTime now = steadyNow();
+    const bool third = faults_[0] != SteadyTime{} && now - faults_[0] < kFaultSpan;
+    faults_ = {faults_[1], now};
+    return third;
+}
+
+// ---- with the mutex held
+
+int UsbStream::busy() const { return inFlight_ + static_cast<int>(ready_.size()); }
+
+void UsbStream::submitIdle() {
+    for (Slot& slot : slots_) {
+        if (holding_ || failure_ || busy() >= counters_.ring) return;
+        if (slot.place != Place::Idle) continue;
+        const int code = libusb_submit_transfer(slot.transfer);
+        if (code == 0) {
+            slot.place = Place::InFlight;
+            ++inFlight_;
+        } else if (code == LIBUSB_ERROR_NO_MEM) {
+            return shrink();
+        } else if (code == LIBUSB_ERROR_NO_DEVICE) {
+            return fail(usbError(code, "read from rig " + strings().serial));
+        } else {
+            suspect_ = holding_ = true;
+            return;
+        }
+    }
+}
+
+/// What is in flight stays so: the ring shrinks as transfers end.
+void UsbStream::shrink() {
+    counters_.ring = std::max(kFewest, counters_.ring / 2);
+    if (!std::exchange(warned_, true)) log::warning(memoryHint());
+}
+
+std::string UsbStream::memoryHint() const {
+    return "rig " + strings().serial + ": the system has no memory for more USB transfers, " +
+           std::to_string(counters_.ring) +
+           " are kept; write a larger number into /sys/module/usbcore/parameters/usbfs_memory_mb";
+}
+
+void UsbStream::fail(Error error) {
+    if (!failure_) failure_ = std::move(error);
+    holding_ = true;
+    changed_.notify_all();
+}
+
+}  // namespace gonio::driver

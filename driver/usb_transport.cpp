@@ -1,0 +1,158 @@
+#include "driver/usb_transport.h"
+
+#include <utility>
+
+#include "driver/hid_channel.h"
+#include "driver/protocol/reports.h"
+#include "driver/steady_clock.h"
+#include "driver/usb_find.h"
+#include "driver/usb_stream.h"
+
+namespace gonio::driver {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kCloseLimit = 900ms;  // of the second that closing may take
+// Where IDENT does not say it: the rig is of another major version, or damaged, and the link will
+// refuse it by name.
+constexpr std::size_t kAnyPayload = 64 * 1024;
+constexpr std::size_t kLargestPayload = std::size_t{16} << 20;
+
+class UsbTransport : public Transport {
+public:
+    UsbTransport(std::shared_ptr<UsbStream> stream, std::shared_ptr<HidChannel> hid)
+        : stream_(std::move(stream)), hid_(std::move(hid)) {}
+    ~UsbTransport() override {
+        const auto deadline = std::chrono::steady_clock::now() + kCloseLimit;
+        hid_->askToStop();
+        stream_->askToStop();
+        stream_->awaitStop(deadline);
+        hid_->awaitStop(deadline);
+    }
+    UsbTransport(const UsbTransport&) = delete;
+    UsbTransport& operator=(const UsbTransport&) = delete;
+
+    [[nodiscard]] DeviceStrings strings() const override { return stream_->strings(); }
+    [[nodiscard]] const Clock& clock() const override { return clock_; }
+
+    Result<void> write(const Report& report) override {
+        if (auto lost = stream_->failure()) return *lost;
+        return hid_->write(report);
+    }
+    Result<void> setFeature(const Report& report) override {
+        if (auto lost = stream_->failure()) return *lost;
+        return hid_->setFeature(report);
+    }
+    [[nodiscard]] Result<Report> getFeature(std::uint8_t id) override {
+        if (auto lost = stream_->failure()) return *lost;
+        return hid_->getFeature(id);
+    }
+    [[nodiscard]] Result<std::optional<Report>> readInput(Nanoseconds wait) override {
+        auto report = hid_->readInput(wait);
+        if (report && !*report) {
+            if (auto lost = stream_->failure()) return *lost;
+        }
+        return report;
+    }
+    [[nodiscard]] Result<std::optional<std::vector<std::uint8_t>>> readBulk(
+        Nanoseconds wait) override {
+        auto chunk = stream_->read(wait);
+        if (chunk && !*chunk) {
+            if (auto lost = hid_->failure()) return *lost;
+        }
+        return chunk;
+    }
+    Result<void> resetStream() override { return stream_->reset(); }
+
+private:
+    SteadyClock clock_;
+    std::shared_ptr<UsbStream> stream_;
+    std::shared_ptr<HidChannel> hid_;
+};
+
+Result<FoundRig> theOne(std::vector<FoundRig> rigs, const UsbSelection& wanted) {
+    const std::string ids = idText(wanted.vendor, wanted.product);
+    if (rigs.empty()) {
+        return Error{ErrorKind::NoRig,
+                     "no rig " + (wanted.serial ? *wanted.serial + " " : std::string()) +
+                         "with USB id " + ids + " is there; is it plugged in and powered?"};
+    }
+    if (rigs.size() == 1) return std::move(rigs.front());
+    std::string names;
+    for (const FoundRig& found : rigs) names += " " + found.rig.serial;
+    return Error{ErrorKind::Usage,
+                 std::to_string(rigs.size()) + " rigs with USB id " + ids + " are there:" + names +
+                     "; say which one by its serial number"};
+}
+
+std::size_t payloadOf(HidChannel& hid) {
+    const auto report = hid.getFeature(static_cast<std::uint8_t>(ReportId::Ident));
+    if (!report) return kAnyPayload;
+    const Result<Ident> ident = decodeIdent(*report);
+    if (!ident || ident->maxChunkPayload == 0 || ident->maxChunkPayload > kLargestPayload)
+        return kAnyPayload;
+    return ident->maxChunkPayload;
+}
+
+/// Looks into a rig without taking it from whoever uses it.
+void inspect(const FoundRig& found, UsbRig& rig) {
+    const auto opened = openRig(found);
+    if (!opened) {
+        rig.obstacle = opened.error().message;
+        return;
+    }
+    if (!opened->strings.serial.empty()) rig.serial = opened->strings.serial;
+    rig.protocol = opened->strings.protocol;
+    const auto node = findHid(opened->strings, found.interfaces.hid);
+    rig.obstacle = node ? hidObstacle(*node) : "its HID interface has no hidraw node";
+}
+
+}  // namespace
+
+Result<std::vector<UsbRig>> listUsb(const UsbSelection& wanted) {
+    const auto context = makeUsbContext();
+    if (!context) return context.error();
+    const auto found = findRigs(context->get(), wanted);
+    if (!found) return found.error();
+    std::vector<UsbRig> rigs;
+    for (const FoundRig& one : *found) {
+        rigs.push_back(one.rig);
+        inspect(one, rigs.back());
+    }
+    return rigs;
+}
+
+Result<std::unique_ptr<Transport>> openUsb(const UsbSelection& wanted) {
+    auto context = makeUsbContext();
+    if (!context) return context.error();
+    auto rigs = findRigs(context->get(), wanted);
+    if (!rigs) return rigs.error();
+    auto found = theOne(std::move(*rigs), wanted);
+    if (!found) return found.error();
+    auto opened = openRig(*found);
+    if (!opened) return opened.error();
+    if (wanted.serial && opened->strings.serial != *wanted.serial) {
+        return Error{
+            ErrorKind::NoRig,
+            "rig " + *wanted.serial + " is not there, rig " + opened->strings.serial + " is"};
+    }
+    if (auto claimed = claimStream(*opened); !claimed) return claimed.error();
+    const auto node = findHid(opened->strings, opened->interfaces.hid);
+    if (!node) {
+        return Error{ErrorKind::Device,
+                     "rig " + opened->strings.serial +
+                         ": its HID interface has no hidraw node; is the module hidraw loaded, and "
+                         "/dev of this container complete?"};
+    }
+    auto hid = HidChannel::open(*node);
+    if (!hid) return hid.error();
+    found->device.reset();
+    auto stream = std::make_shared<UsbStream>(std::move(*context), std::move(*opened));
+    std::unique_ptr<Transport> transport = std::make_unique<UsbTransport>(stream, *hid);
+    const auto started = stream->start(payloadOf(**hid));
+    if (!started) return started.error();
+    return transport;
+}
+
+}  // namespace gonio::driver

@@ -1,0 +1,87 @@
+#pragma once
+// The simulated rig as a USB device (PROTOCOL.md 1): descriptors, strings, control requests, the
+// HID reports and the bulk stream with its packets. It answers requests and knows nothing of what
+// carries them: a test bed or a USB/IP server does. Time is the device's own; who carries the
+// requests lets it pass. Not for several threads at once.
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "sim/device.h"
+
+namespace gonio::sim {
+
+/// The eight bytes that begin a control transfer.
+struct UsbSetup {
+    std::uint8_t requestType = 0;
+    std::uint8_t request = 0;
+    std::uint16_t value = 0;
+    std::uint16_t index = 0;
+    std::uint16_t length = 0;
+};
+
+enum class UsbAnswer {
+    Done,
+    Nak,  ///< nothing yet: ask again
+    Stall
+};
+
+struct UsbReply {
+    UsbAnswer answer = UsbAnswer::Done;
+    std::vector<std::uint8_t> data;  ///< IN only
+};
+
+struct UsbIds {
+    std::uint16_t vendor = 0x1209;
+    std::uint16_t product = 0x0001;
+};
+
+class UsbDevice {
+public:
+    static constexpr std::uint8_t kHidInterface = 0, kStreamInterface = 1;
+    static constexpr std::uint8_t kInterruptIn = 0x81, kInterruptOut = 0x01, kBulkIn = 0x82;
+    static constexpr std::size_t kBulkPacket = 512;  // high speed
+
+    explicit UsbDevice(DeviceConfig config, UsbIds ids = {});
+
+    [[nodiscard]] Device& device() { return device_; }
+    [[nodiscard]] const UsbIds& ids() const { return ids_; }
+    [[nodiscard]] std::vector<std::uint8_t> deviceDescriptor() const;
+    [[nodiscard]] std::vector<std::uint8_t> configDescriptor() const;
+    [[nodiscard]] static std::span<const std::uint8_t> reportDescriptor();
+
+    /// `out` is the data stage of a request to the device.
+    UsbReply control(const UsbSetup& setup, std::span<const std::uint8_t> out = {});
+    /// One input report.
+    UsbReply interruptIn();
+    UsbReply interruptOut(std::span<const std::uint8_t> report);
+    /// What a transfer of `length` bytes (a multiple of the packet) gets: it ends when it is full,
+    /// or at a short packet. A chunk whose bytes fill whole packets is followed by an empty one.
+    UsbReply bulkIn(std::size_t length);
+
+    /// The bulk endpoint stalls until its halt is cleared.
+    void haltStream() { halted_ = true; }
+    /// Bus reset, or the cable was pulled: what was half sent is lost.
+    void reset();
+
+private:
+    UsbReply standard(const UsbSetup& setup);
+    UsbReply hidClass(const UsbSetup& setup, std::span<const std::uint8_t> out);
+    [[nodiscard]] std::optional<std::vector<std::uint8_t>> descriptor(const UsbSetup& setup) const;
+    [[nodiscard]] std::optional<std::vector<std::uint8_t>> string(std::uint8_t index) const;
+    bool takeReport(std::span<const std::uint8_t> report);
+    void dropHalfSent();
+
+    Device device_;
+    UsbIds ids_;
+    std::uint8_t configuration_ = 1;
+    bool halted_ = false;
+    std::vector<std::uint8_t> sending_;  ///< the chunk on its way
+    std::size_t sent_ = 0;               ///< of its bytes
+    bool open_ = false;                  ///< its last packet was a full one: an empty one is due
+};
+
+}  // namespace gonio::sim
