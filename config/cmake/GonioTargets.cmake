@@ -1,6 +1,6 @@
 # gonio_library(NAME SOURCES ... [PUBLIC libs] [PRIVATE libs]): the one target of a folder.
-# gonio_test(NAME LABEL label SOURCES ... LIBS ... [TIMEOUT seconds]): a GoogleTest program with one
-# label. A label `run` takes all cores: its tests run alone.
+# gonio_test(NAME LABEL label SOURCES ... LIBS ... [TIMEOUT seconds] [WRAPPER command ...]): a
+# GoogleTest program with one label. A label `run` takes all cores: its tests run alone.
 # gonio_program_test(...): likewise, for tests that run the `gonio` program (GONIO_PROGRAM).
 
 add_library(gonio_options INTERFACE)
@@ -35,7 +35,7 @@ function(gonio_library name)
 endfunction()
 
 function(gonio_test name)
-    cmake_parse_arguments(TEST "" "LABEL;TIMEOUT" "SOURCES;LIBS" ${ARGN})
+    cmake_parse_arguments(TEST "" "LABEL;TIMEOUT" "SOURCES;LIBS;WRAPPER" ${ARGN})
     if(NOT TEST_TIMEOUT)
         set(TEST_TIMEOUT 120)
     endif()
@@ -48,6 +48,9 @@ function(gonio_test name)
     target_link_libraries(${name} PRIVATE ${TEST_LIBS} GTest::gtest_main gonio_options)
     target_compile_definitions(${name} PRIVATE
         GONIO_SOURCE_DIR="${CMAKE_SOURCE_DIR}" GONIO_DATA_DIR="${GONIO_DATA_DIR}")
+    if(TEST_WRAPPER)
+        set_target_properties(${name} PROPERTIES CROSSCOMPILING_EMULATOR "${TEST_WRAPPER}")
+    endif()
     gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60
         PROPERTIES LABELS "${TEST_LABEL}" TIMEOUT ${TEST_TIMEOUT} RUN_SERIAL ${alone})
 endfunction()

@@ -1,0 +1,149 @@
+#include "tests/device/hidraw_node.h"
+
+#include <fcntl.h>
+#include <linux/hidraw.h>
+#include <linux/input.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdlib>
+#include <thread>
+
+namespace gonio::device_test {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kKernelPatience = 3s;  // a control request of usbhid ends by itself, late
+
+/// What nobody has read must not meet the next one who opens the node.
+void discardUnread(int terminal) {
+    const char* name = ptsname(terminal);
+    if (!name) return;
+    const int other = ::open(name, O_RDONLY | O_NONBLOCK | O_NOCTTY);
+    if (other < 0) return;
+    std::array<char, 4096> bytes{};
+    while (::read(other, bytes.data(), bytes.size()) > 0) {
+    }
+    ::close(other);
+}
+
+}  // namespace
+
+HidrawNode::HidrawNode(LiveRig& live, UMockdevTestbed* testbed, std::string path)
+    : live_(live), testbed_(testbed), path_(std::move(path)), handler_(umockdev_ioctl_base_new()) {
+    g_signal_connect(handler_, "client-connected", G_CALLBACK(onOpen), this);
+    g_signal_connect(handler_, "handle-ioctl", G_CALLBACK(onIoctl), this);
+    g_signal_connect(handler_, "handle-write", G_CALLBACK(onWrite), this);
+    umockdev_testbed_attach_ioctl(testbed_, path_.c_str(), handler_, nullptr);
+}
+
+HidrawNode::~HidrawNode() {
+    live_.listen({});
+    g_signal_handlers_disconnect_by_data(handler_, this);
+    umockdev_testbed_detach_ioctl(testbed_, path_.c_str(), nullptr);
+    g_object_unref(handler_);
+}
+
+void HidrawNode::connect() {
+    terminal_ = umockdev_testbed_get_dev_fd(testbed_, path_.c_str());
+    live_.listen([this](const std::vector<std::uint8_t>& report) {
+        if (gone_ || openFiles_ == 0) return;
+        // A full queue loses the newest, as hidraw does.
+        int unread = 0;
+        if (ioctl(terminal_, TIOCOUTQ, &unread) == 0 && unread > 3500) return;
+        (void)!::write(terminal_, report.data(), report.size());
+    });
+}
+
+void HidrawNode::pull() {
+    gone_ = true;
+    live_.listen({});
+}
+
+void HidrawNode::onOpen(UMockdevIoctlBase*, UMockdevIoctlClient* client, HidrawNode* self) {
+    if (self->openFiles_ == 0) discardUnread(self->terminal_);
+    ++self->openFiles_;
+    g_signal_connect(client, "notify::connected", G_CALLBACK(onClose), self);
+}
+
+void HidrawNode::onClose(UMockdevIoctlClient* client, GParamSpec*, HidrawNode* self) {
+    if (umockdev_ioctl_client_get_connected(client)) return;
+    g_signal_handlers_disconnect_by_data(client, self);
+    --self->openFiles_;
+}
+
+void HidrawNode::waitWhileHung() const {
+    const auto end = std::chrono::steady_clock::now() + kKernelPatience;
+    while (live_.faults.hung && std::chrono::steady_clock::now() < end)
+        std::this_thread::sleep_for(5ms);
+}
+
+gboolean HidrawNode::onIoctl(UMockdevIoctlBase*, UMockdevIoctlClient* client, HidrawNode* self) {
+    const int result = self->answer(umockdev_ioctl_client_get_request(client),
+                                    umockdev_ioctl_client_get_arg(client));
+    umockdev_ioctl_client_complete(client, result < 0 ? -1 : result, result < 0 ? -result : 0);
+    return TRUE;
+}
+
+gboolean HidrawNode::onWrite(UMockdevIoctlBase*, UMockdevIoctlClient* client, HidrawNode* self) {
+    const UMockdevIoctlData* arg = umockdev_ioctl_client_get_arg(client);
+    const std::span report(arg->data, static_cast<std::size_t>(arg->data_len));
+    self->waitWhileHung();
+    int error = self->gone_ ? ENODEV : self->live_.faults.hung ? ETIMEDOUT : 0;
+    if (error == 0) {
+        const auto reply =
+            self->live_.with([&](sim::UsbDevice& usb) { return usb.interruptOut(report); });
+        if (reply.answer != sim::UsbAnswer::Done) error = EPIPE;
+        self->live_.flushReports();
+    }
+    umockdev_ioctl_client_complete(client, error == 0 ? arg->data_len : -1, error);
+    return TRUE;
+}
+
+int HidrawNode::answer(unsigned long request, UMockdevIoctlData* arg) {
+    if (gone_) return -ENODEV;
+    const std::size_t size = _IOC_SIZE(request);
+    UMockdevIoctlData* data = umockdev_ioctl_data_resolve(arg, 0, size, nullptr);
+    if (!data) return -EFAULT;
+    const std::span bytes(data->data, size);
+    umockdev_ioctl_data_unref(data);  // its parent keeps it
+    const auto descriptor = sim::UsbDevice::reportDescriptor();
+    switch (_IOC_NR(request)) {
+        case _IOC_NR(HIDIOCGRDESCSIZE):
+            *reinterpret_cast<int*>(bytes.data()) = static_cast<int>(descriptor.size());
+            return 0;
+        case _IOC_NR(HIDIOCGRDESC): {
+            auto& told = *reinterpret_cast<hidraw_report_descriptor*>(bytes.data());
+            std::copy(descriptor.begin(), descriptor.end(), told.value);
+            return 0;
+        }
+        case _IOC_NR(HIDIOCGRAWINFO):
+            *reinterpret_cast<hidraw_devinfo*>(bytes.data()) = {BUS_USB, 0x1209, 0x0001};
+            return 0;
+        case _IOC_NR(HIDIOCSFEATURE(0)): return feature(false, bytes);
+        case _IOC_NR(HIDIOCGFEATURE(0)): return feature(true, bytes);
+        default: return -ENOTTY;
+    }
+}
+
+int HidrawNode::feature(bool get, std::span<std::uint8_t> report) {
+    waitWhileHung();
+    if (live_.faults.hung) return -ETIMEDOUT;
+    constexpr std::uint16_t kFeature = 3 << 8;
+    const sim::UsbSetup setup{.requestType = static_cast<std::uint8_t>(get ? 0xA1 : 0x21),
+                              .request = static_cast<std::uint8_t>(get ? 1 : 9),
+                              .value = static_cast<std::uint16_t>(kFeature | report[0]),
+                              .index = sim::UsbDevice::kHidInterface,
+                              .length = static_cast<std::uint16_t>(report.size())};
+    const auto reply = live_.with(
+        [&](sim::UsbDevice& usb) { return get ? usb.control(setup) : usb.control(setup, report); });
+    if (reply.answer != sim::UsbAnswer::Done) return -EPIPE;
+    std::copy(reply.data.begin(), reply.data.end(), report.begin());
+    return get ? static_cast<int>(reply.data.size()) : static_cast<int>(report.size());
+}
+
+}  // namespace gonio::device_test

@@ -1,0 +1,66 @@
+#pragma once
+// A simulated rig in real time: its clock is the computer's, counted from when it was made. Each
+// request finds it where it would be now; between requests a thread of its own lets time pass and
+// hands on the input reports. What it can do wrong on purpose is in Faults.
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "proc/core/frame.h"
+#include "sim/usb_device.h"
+
+namespace gonio::device_test {
+
+/// Read by the doors; counters go down to zero as they are used up.
+struct Faults {
+    std::atomic<bool> hung{false};         ///< enumerated, and answers nothing
+    std::atomic<bool> claimed{false};      ///< another program has the stream interface
+    std::atomic<int> mostTransfers{1000};  ///< then the kernel has no memory for another
+    std::atomic<int> shorten{0};           ///< transfers that end after half their bytes
+    std::atomic<int> overflow{0};          ///< transfers that bring more than their buffer holds
+    std::atomic<int> protocolErrors{0};    ///< transfers that end in an error of the bus
+};
+
+class LiveRig {
+public:
+    using Sink = std::function<void(const std::vector<std::uint8_t>& report)>;
+
+    explicit LiveRig(sim::DeviceConfig config);
+    ~LiveRig();
+    LiveRig(const LiveRig&) = delete;
+    LiveRig& operator=(const LiveRig&) = delete;
+
+    /// What `use` answers, with the rig at the present time.
+    template <class Use>
+    auto with(Use use) {
+        const std::scoped_lock lock(mutex_);
+        advance();
+        return use(usb_);
+    }
+    /// Takes the reports from now on; empty: nobody listens, and they are lost.
+    void listen(Sink sink);
+    /// Reports that have come are handed on at once.
+    void flushReports();
+    /// takes a lit frame of each LED in this window, so that later frames come as fast
+    /// as a rig's: what the simulator works out once is then known.
+    void warmUp(const Window& window);
+
+    Faults faults;
+
+private:
+    void advance();
+    void handOn();
+
+    sim::UsbDevice usb_;
+    std::mutex mutex_;
+    Sink sink_;
+    Nanoseconds boot_;
+    Nanoseconds skipped_{0};  ///< device time that warming up took
+    std::jthread pump_;
+};
+
+}  // namespace gonio::device_test

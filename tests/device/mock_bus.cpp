@@ -1,0 +1,123 @@
+#include "tests/device/mock_bus.h"
+
+#include <umockdev.h>
+
+#include <stdexcept>
+
+#include "tests/device/hidraw_node.h"
+#include "tests/device/usbfs_node.h"
+
+namespace gonio::device_test {
+namespace {
+
+std::string hex(std::span<const std::uint8_t> bytes) {
+    constexpr const char* kDigits = "0123456789ABCDEF";
+    std::string text;
+    for (std::uint8_t b : bytes) {
+        text += kDigits[b >> 4];
+        text += kDigits[b & 15];
+    }
+    return text;
+}
+
+std::string owned(gchar* text) {
+    std::string copy = text;
+    g_free(text);
+    return copy;
+}
+
+constexpr const char* kHid = "0003:1209:0001.0001";
+
+}  // namespace
+
+MockBus::MockBus() : testbed_(umockdev_testbed_new()) {
+    if (!umockdev_in_mock_environment()) throw std::runtime_error("run under umockdev-wrapper");
+}
+
+MockBus::~MockBus() { g_object_unref(testbed_); }
+
+std::string MockBus::real(const std::string& path) const {
+    return owned(umockdev_testbed_get_root_dir(testbed_)) + path;
+}
+
+MockRig::MockRig(MockBus& bus, sim::DeviceConfig config, int port)
+    : bus_(bus), live_(config), serial_(config.serial), port_(port) {
+    plug();
+}
+
+MockRig::~MockRig() {
+    if (usbfs_) unplug();
+}
+
+std::string MockRig::usbNode() const { return "/dev/bus/usb/001/00" + std::to_string(port_ + 1); }
+std::string MockRig::hidNode() const { return "/dev/hidraw" + std::to_string(port_); }
+
+/// What sysfs and udev of a Linux say of such a device.
+std::string MockRig::description() {
+    std::vector<std::uint8_t> descriptors;
+    live_.with([&](sim::UsbDevice& usb) {
+        descriptors = usb.deviceDescriptor();
+        const auto config = usb.configDescriptor();
+        descriptors.insert(descriptors.end(), config.begin(), config.end());
+    });
+    const std::string port = std::to_string(port_);
+    const std::string device = "/devices/usb1/1-" + port;
+    const std::string hid = device + "/1-" + port + ":1.0/" + kHid;
+    const auto interface = [&](int number, const std::string& kind) {
+        const std::string n = std::to_string(number);
+        return "P: " + device + "/1-" + port + ":1." + n +
+               "\nE: SUBSYSTEM=usb\nE: DEVTYPE=usb_interface\nA: bInterfaceNumber=0" + n +
+               "\\n\nA: bInterfaceClass=" + kind + "\\n\n\n";
+    };
+    return "P: " + device + "\nN: " + usbNode().substr(5) +
+           "\nE: SUBSYSTEM=usb\nE: DEVTYPE=usb_device\nE: DRIVER=usb\nE: BUSNUM=001\nE: DEVNUM=00" +
+           std::to_string(port_ + 1) + "\nE: DEVNAME=" + usbNode() +
+           "\nE: PRODUCT=1209/1/100\nA: busnum=1\\n\nA: devnum=" + std::to_string(port_ + 1) +
+           "\\n\nA: speed=480\\n\nA: bConfigurationValue=1\\n\nA: idVendor=1209\\n\n"
+           "A: idProduct=0001\\n\nA: bcdDevice=0100\\n\nA: serial=" +
+           serial_ + "\\n\nA: manufacturer=gonio\\n\nA: product=simulated rig\\n\nH: descriptors=" +
+           hex(descriptors) + "\n\n" + interface(0, "03") + interface(1, "ff") + "P: " + hid +
+           "\nE: SUBSYSTEM=hid\nE: DRIVER=hid-generic\nE: HID_ID=0003:00001209:00000001\n"
+           "E: HID_NAME=gonio simulated rig\nE: HID_PHYS=usb-1-" +
+           port + "/input0\nE: HID_UNIQ=" + serial_ +
+           "\nA: uevent=HID_ID=0003:00001209:00000001\\n" +
+           "HID_NAME=gonio simulated rig\\nHID_PHYS=usb-1-" + port +
+           "/input0\\nHID_UNIQ=" + serial_ +
+           "\\n\nH: report_descriptor=" + hex(sim::UsbDevice::reportDescriptor()) +
+           "\n\nP: " + hid + "/hidraw/hidraw" + port + "\nN: hidraw" + port +
+           "\nE: SUBSYSTEM=hidraw\nE: DEVNAME=" + hidNode() + "\nL: device=../../../" + kHid +
+           "\n\n";
+}
+
+void MockRig::plug() {
+    usbfs_ = std::make_unique<UsbfsNode>(live_, bus_.testbed(), usbNode());
+    hidraw_ = std::make_unique<HidrawNode>(live_, bus_.testbed(), hidNode());
+    GError* error = nullptr;
+    if (!umockdev_testbed_add_from_string(bus_.testbed(), description().c_str(), &error)) {
+        const std::string why = error->message;
+        g_error_free(error);
+        throw std::runtime_error(why);
+    }
+    hidraw_->connect();
+}
+
+void MockRig::unplug() {
+    usbfs_->pull();
+    hidraw_->pull();
+    live_.with([](sim::UsbDevice& usb) { usb.reset(); });
+    const std::string port = std::to_string(port_);
+    const std::string device = "/sys/devices/usb1/1-" + port;
+    const std::string interface = device + "/1-" + port + ":1.";
+    for (const std::string& path : {interface + "0/" + kHid + "/hidraw/hidraw" + port,
+                                    interface + "0/" + kHid,
+                                    interface + "0",
+                                    interface + "1",
+                                    device}) {
+        umockdev_testbed_uevent(bus_.testbed(), path.c_str(), "remove");
+        umockdev_testbed_remove_device(bus_.testbed(), path.c_str());
+    }
+    usbfs_.reset();
+    hidraw_.reset();
+}
+
+}  // namespace gonio::device_test

@@ -1,0 +1,59 @@
+#pragma once
+// The umockdev test bed with rigs on it: sysfs, udev and the device nodes that libusb, hidapi and
+// libudev see, answered by simulated rigs in real time. One bus at a time in a process, and the
+// process must run under umockdev-wrapper. Transports are closed before their rig and bus end.
+
+#include <memory>
+#include <string>
+
+#include "tests/device/live_rig.h"
+
+typedef struct _UMockdevTestbed UMockdevTestbed;
+
+namespace gonio::device_test {
+
+class HidrawNode;
+class UsbfsNode;
+
+class MockBus {
+public:
+    MockBus();
+    ~MockBus();
+    MockBus(const MockBus&) = delete;
+    MockBus& operator=(const MockBus&) = delete;
+    [[nodiscard]] UMockdevTestbed* testbed() const { return testbed_; }
+    /// Where a path of the mocked system is in truth.
+    [[nodiscard]] std::string real(const std::string& path) const;
+
+private:
+    UMockdevTestbed* testbed_;
+};
+
+class MockRig {
+public:
+    /// Plugged in at `port`.
+    MockRig(MockBus& bus, sim::DeviceConfig config, int port = 1);
+    ~MockRig();
+    MockRig(const MockRig&) = delete;
+    MockRig& operator=(const MockRig&) = delete;
+
+    void plug();
+    /// The cable is pulled: transfers in flight end in errors, then the nodes vanish.
+    void unplug();
+    [[nodiscard]] LiveRig& live() { return live_; }
+    [[nodiscard]] Faults& faults() { return live_.faults; }
+    [[nodiscard]] std::string usbNode() const;
+    [[nodiscard]] std::string hidNode() const;
+
+private:
+    [[nodiscard]] std::string description();
+
+    MockBus& bus_;
+    LiveRig live_;
+    std::string serial_;
+    int port_;
+    std::unique_ptr<UsbfsNode> usbfs_;
+    std::unique_ptr<HidrawNode> hidraw_;
+};
+
+}  // namespace gonio::device_test

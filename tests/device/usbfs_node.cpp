@@ -1,0 +1,220 @@
+#include "tests/device/usbfs_node.h"
+
+#include <linux/usbdevice_fs.h>
+#include <sys/ioctl.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstddef>
+#include <cstring>
+#include <thread>
+
+namespace gonio::device_test {
+namespace {
+
+using namespace std::chrono_literals;
+
+usbdevfs_urb& urbOf(UMockdevIoctlData* data) {
+    return *reinterpret_cast<usbdevfs_urb*>(data->data);
+}
+
+template <class T>
+T* resolved(UMockdevIoctlData* arg) {
+    UMockdevIoctlData* data = umockdev_ioctl_data_resolve(arg, 0, sizeof(T), nullptr);
+    T* pointer = data ? reinterpret_cast<T*>(data->data) : nullptr;
+    if (data) umockdev_ioctl_data_unref(data);  // its parent keeps it
+    return pointer;
+}
+
+/// The client's bytes at the urb's buffer.
+std::span<std::uint8_t> buffer(UMockdevIoctlData* urb, std::size_t length) {
+    UMockdevIoctlData* data =
+        umockdev_ioctl_data_resolve(urb, offsetof(usbdevfs_urb, buffer), length, nullptr);
+    if (!data) return {};
+    const std::span bytes(data->data, static_cast<std::size_t>(data->data_len));
+    umockdev_ioctl_data_unref(data);
+    return bytes;
+}
+
+bool takeOne(std::atomic<int>& counter) {
+    if (counter <= 0) return false;
+    --counter;
+    return true;
+}
+
+}  // namespace
+
+UsbfsNode::UsbfsNode(LiveRig& live, UMockdevTestbed* testbed, std::string path)
+    : live_(live), testbed_(testbed), path_(std::move(path)), handler_(umockdev_ioctl_base_new()) {
+    g_signal_connect(handler_, "handle-ioctl", G_CALLBACK(onIoctl), this);
+    umockdev_testbed_attach_ioctl(testbed_, path_.c_str(), handler_, nullptr);
+}
+
+UsbfsNode::~UsbfsNode() {
+    g_signal_handlers_disconnect_by_data(handler_, this);
+    umockdev_testbed_detach_ioctl(testbed_, path_.c_str(), nullptr);
+    g_object_unref(handler_);
+    const std::scoped_lock lock(mutex_);
+    forget(waiting_);
+    forget(done_);
+}
+
+void UsbfsNode::forget(std::deque<Urb>& urbs) {
+    for (Urb& urb : urbs) umockdev_ioctl_data_unref(urb.data);
+    urbs.clear();
+}
+
+void UsbfsNode::pull() {
+    const std::scoped_lock lock(mutex_);
+    gone_ = true;
+    for (Urb& urb : waiting_) {
+        urb.status = -EPROTO;  // as most unplugs on a real kernel show
+        done_.push_back(urb);
+    }
+    waiting_.clear();
+}
+
+gboolean UsbfsNode::onIoctl(UMockdevIoctlBase*, UMockdevIoctlClient* client, UsbfsNode* self) {
+    const int error = self->answer(umockdev_ioctl_client_get_request(client),
+                                   umockdev_ioctl_client_get_arg(client));
+    umockdev_ioctl_client_complete(client, error == 0 ? 0 : -1, error);
+    return TRUE;
+}
+
+int UsbfsNode::answer(unsigned long request, UMockdevIoctlData* arg) {
+    std::unique_lock lock(mutex_);
+    if (request == USBDEVFS_REAPURBNDELAY) {
+        if (done_.empty() && !advanceBulk() && !gone_) {
+            lock.unlock();
+            std::this_thread::sleep_for(500us);
+            lock.lock();
+        }
+        return reap(arg);
+    }
+    if (gone_) return ENODEV;
+    switch (request) {
+        case USBDEVFS_GET_CAPABILITIES:
+            *resolved<std::uint32_t>(arg) =
+                USBDEVFS_CAP_ZERO_PACKET | USBDEVFS_CAP_NO_PACKET_SIZE_LIM |
+                USBDEVFS_CAP_BULK_SCATTER_GATHER | USBDEVFS_CAP_REAP_AFTER_DISCONNECT;
+            return 0;
+        case USBDEVFS_GETDRIVER: return ENODATA;  // no kernel driver is bound
+        case USBDEVFS_CLAIMINTERFACE:
+        case USBDEVFS_DISCONNECT_CLAIM: return live_.faults.claimed ? EBUSY : 0;
+        case USBDEVFS_RELEASEINTERFACE: return 0;
+        case USBDEVFS_SUBMITURB: return submit(arg);
+        case USBDEVFS_DISCARDURB: return discard(arg);
+        case USBDEVFS_SETINTERFACE: return setInterface(arg);
+        case USBDEVFS_CLEAR_HALT: {
+            const sim::UsbSetup clear{
+                .requestType = 2, .request = 1, .index = sim::UsbDevice::kBulkIn};
+            live_.with([&](sim::UsbDevice& usb) { return usb.control(clear); });
+            return 0;
+        }
+        default: return ENOTTY;
+    }
+}
+
+int UsbfsNode::setInterface(UMockdevIoctlData* arg) {
+    const auto& wanted = *resolved<usbdevfs_setinterface>(arg);
+    const sim::UsbSetup set{.requestType = 1,
+                            .request = 11,
+                            .value = static_cast<std::uint16_t>(wanted.altsetting),
+                            .index = static_cast<std::uint16_t>(wanted.interface)};
+    const auto reply = live_.with([&](sim::UsbDevice& usb) { return usb.control(set); });
+    return reply.answer == sim::UsbAnswer::Done ? 0 : EPIPE;
+}
+
+int UsbfsNode::submit(UMockdevIoctlData* arg) {
+    UMockdevIoctlData* data = umockdev_ioctl_data_resolve(arg, 0, sizeof(usbdevfs_urb), nullptr);
+    if (!data) return EFAULT;
+    Urb urb{.data = data, .reply = {}, .status = 0};
+    if (urbOf(data).type == USBDEVFS_URB_TYPE_CONTROL) {
+        if (live_.faults.hung) {
+            waiting_.push_back(urb);
+        } else {
+            runControl(urb);
+            done_.push_back(urb);
+        }
+        return 0;
+    }
+    if (static_cast<int>(waiting_.size()) >= live_.faults.mostTransfers) {
+        umockdev_ioctl_data_unref(data);
+        return ENOMEM;
+    }
+    waiting_.push_back(urb);
+    return 0;
+}
+
+void UsbfsNode::runControl(Urb& urb) {
+    constexpr std::size_t kSetup = 8;
+    const auto length = static_cast<std::size_t>(urbOf(urb.data).buffer_length);
+    const auto bytes = buffer(urb.data, length);
+    const auto word = [&](std::size_t i) {
+        return static_cast<std::uint16_t>(bytes[i] | bytes[i + 1] << 8);
+    };
+    const sim::UsbSetup setup{.requestType = bytes[0],
+                              .request = bytes[1],
+                              .value = word(2),
+                              .index = word(4),
+                              .length = word(6)};
+    urb.reply =
+        live_.with([&](sim::UsbDevice& usb) { return usb.control(setup, bytes.subspan(kSetup)); });
+    if (urb.reply.answer != sim::UsbAnswer::Done) urb.status = -EPIPE;
+    std::copy(urb.reply.data.begin(), urb.reply.data.end(), bytes.begin() + kSetup);
+    urbOf(urb.data).actual_length = static_cast<int>(urb.reply.data.size());
+}
+
+int UsbfsNode::discard(UMockdevIoctlData* arg) {
+    const auto address = *reinterpret_cast<gulong*>(arg->data);
+    const auto found = std::find_if(waiting_.begin(), waiting_.end(), [&](const Urb& urb) {
+        return urb.data->client_addr == address;
+    });
+    if (found == waiting_.end()) return EINVAL;
+    found->status = -ENOENT;
+    done_.push_back(*found);
+    waiting_.erase(found);
+    return 0;
+}
+
+/// Ends the oldest bulk transfer if the rig has something for it.
+bool UsbfsNode::advanceBulk() {
+    if (live_.faults.hung || waiting_.empty()) return false;
+    Urb& urb = waiting_.front();
+    const auto length = static_cast<std::size_t>(urbOf(urb.data).buffer_length);
+    urb.reply = live_.with([&](sim::UsbDevice& usb) { return usb.bulkIn(length); });
+    if (urb.reply.answer == sim::UsbAnswer::Nak) return false;
+    if (urb.reply.answer == sim::UsbAnswer::Stall) {
+        urb.status = -EPIPE;
+    } else if (takeOne(live_.faults.overflow)) {
+        urb.status = -EOVERFLOW;
+    } else if (takeOne(live_.faults.protocolErrors)) {
+        urb.status = -EPROTO;
+    } else if (takeOne(live_.faults.shorten)) {
+        urb.reply.data.resize(urb.reply.data.size() / 2);
+    }
+    if (urb.status != 0) urb.reply.data.clear();
+    done_.push_back(std::move(urb));
+    waiting_.pop_front();
+    return true;
+}
+
+int UsbfsNode::reap(UMockdevIoctlData* arg) {
+    if (done_.empty()) return gone_ ? ENODEV : EAGAIN;
+    Urb urb = std::move(done_.front());
+    done_.pop_front();
+    usbdevfs_urb& told = urbOf(urb.data);
+    told.status = urb.status;
+    if (told.type == USBDEVFS_URB_TYPE_BULK) {
+        const auto bytes = buffer(urb.data, urb.reply.data.size());
+        std::copy_n(urb.reply.data.begin(), bytes.size(), bytes.begin());
+        told.actual_length = static_cast<int>(bytes.size());
+    }
+    UMockdevIoctlData* pointer = umockdev_ioctl_data_resolve(arg, 0, sizeof(void*), nullptr);
+    umockdev_ioctl_data_set_ptr(pointer, 0, urb.data);
+    umockdev_ioctl_data_unref(pointer);
+    umockdev_ioctl_data_unref(urb.data);
+    return 0;
+}
+
+}  // namespace gonio::device_test

@@ -1,0 +1,54 @@
+#pragma once
+// /dev/bus/usb/...: the requests of usbfs that libusb makes, answered by a simulated rig. Bulk
+// transfers wait here until the rig has something; a look for finished ones waits half a
+// millisecond, since nothing else keeps libusb from asking without pause (the node is a plain file,
+// which poll() always finds ready).
+
+#include <umockdev.h>
+
+#include <deque>
+#include <mutex>
+#include <string>
+
+#include "tests/device/live_rig.h"
+
+struct usbdevfs_urb;
+
+namespace gonio::device_test {
+
+class UsbfsNode {
+public:
+    UsbfsNode(LiveRig& live, UMockdevTestbed* testbed, std::string path);
+    ~UsbfsNode();
+    UsbfsNode(const UsbfsNode&) = delete;
+    UsbfsNode& operator=(const UsbfsNode&) = delete;
+    /// From now on the device is gone.
+    void pull();
+
+private:
+    struct Urb {
+        UMockdevIoctlData* data = nullptr;  ///< the caller's struct usbdevfs_urb
+        sim::UsbReply reply;
+        int status = 0;
+    };
+    static gboolean onIoctl(UMockdevIoctlBase*, UMockdevIoctlClient* client, UsbfsNode* self);
+    /// The errno, 0 for success.
+    int answer(unsigned long request, UMockdevIoctlData* arg);
+    int submit(UMockdevIoctlData* arg);
+    int discard(UMockdevIoctlData* arg);
+    int reap(UMockdevIoctlData* arg);
+    int setInterface(UMockdevIoctlData* arg);
+    void runControl(Urb& urb);
+    [[nodiscard]] bool advanceBulk();
+    static void forget(std::deque<Urb>& urbs);
+
+    LiveRig& live_;
+    UMockdevTestbed* testbed_;
+    std::string path_;
+    UMockdevIoctlBase* handler_;
+    std::mutex mutex_;
+    std::deque<Urb> waiting_, done_;
+    bool gone_ = false;
+};
+
+}  // namespace gonio::device_test
