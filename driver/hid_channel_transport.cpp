@@ -1,7 +1,8 @@
 #include <hidapi.h>
 #include <unistd.h>
 
-#include <algorithm>
+#include <cerrno>
+#include <system_error>
 
 #include "driver/hid_channel.h"
 #include "driver/usb_find.h"
@@ -47,6 +48,7 @@ std::optional<HidNode> findHid(const DeviceStrings& rig, int interfaceNumber) {
 
 std::string hidObstacle(const HidNode& node) {
     if (access(node.path.c_str(), R_OK | W_OK) == 0) return {};
+    if (errno != EACCES) return node.path + ": " + std::generic_category().message(errno);
     return "no permission for " + node.path + ": " + permissionCure(node.vendor, node.product);
 }
 

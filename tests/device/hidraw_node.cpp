@@ -34,47 +34,29 @@ void discardUnread(int terminal) {
 }  // namespace
 
 HidrawNode::HidrawNode(LiveRig& live, UMockdevTestbed* testbed, std::string path)
-    : live_(live), testbed_(testbed), path_(std::move(path)), handler_(umockdev_ioctl_base_new()) {
-    g_signal_connect(handler_, "client-connected", G_CALLBACK(onOpen), this);
-    g_signal_connect(handler_, "handle-ioctl", G_CALLBACK(onIoctl), this);
-    g_signal_connect(handler_, "handle-write", G_CALLBACK(onWrite), this);
-    umockdev_testbed_attach_ioctl(testbed_, path_.c_str(), handler_, nullptr);
+    : MockNode(testbed, std::move(path)), live_(live) {
+    g_signal_connect(handler(), "handle-ioctl", G_CALLBACK(onIoctl), this);
+    g_signal_connect(handler(), "handle-write", G_CALLBACK(onWrite), this);
 }
 
-HidrawNode::~HidrawNode() {
-    live_.listen({});
-    g_signal_handlers_disconnect_by_data(handler_, this);
-    umockdev_testbed_detach_ioctl(testbed_, path_.c_str(), nullptr);
-    g_object_unref(handler_);
-}
+HidrawNode::~HidrawNode() { retire(); }
 
 void HidrawNode::connect() {
-    terminal_ = umockdev_testbed_get_dev_fd(testbed_, path_.c_str());
+    terminal_ = umockdev_testbed_get_dev_fd(testbed(), path().c_str());
     live_.listen([this](const std::vector<std::uint8_t>& report) {
-        if (gone_ || openFiles_ == 0) return;
         // A full queue loses the newest, as hidraw does.
         int unread = 0;
-        if (ioctl(terminal_, TIOCOUTQ, &unread) == 0 && unread > 3500) return;
+        if (!isOpen() || (ioctl(terminal_, TIOCOUTQ, &unread) == 0 && unread > 3500)) return;
         (void)!::write(terminal_, report.data(), report.size());
     });
 }
 
 void HidrawNode::pull() {
-    gone_ = true;
     live_.listen({});
+    MockNode::pull();
 }
 
-void HidrawNode::onOpen(UMockdevIoctlBase*, UMockdevIoctlClient* client, HidrawNode* self) {
-    if (self->openFiles_ == 0) discardUnread(self->terminal_);
-    ++self->openFiles_;
-    g_signal_connect(client, "notify::connected", G_CALLBACK(onClose), self);
-}
-
-void HidrawNode::onClose(UMockdevIoctlClient* client, GParamSpec*, HidrawNode* self) {
-    if (umockdev_ioctl_client_get_connected(client)) return;
-    g_signal_handlers_disconnect_by_data(client, self);
-    --self->openFiles_;
-}
+void HidrawNode::firstOpened() { discardUnread(terminal_); }
 
 void HidrawNode::waitWhileHung() const {
     const auto end = std::chrono::steady_clock::now() + kKernelPatience;
@@ -93,7 +75,7 @@ gboolean HidrawNode::onWrite(UMockdevIoctlBase*, UMockdevIoctlClient* client, Hi
     const UMockdevIoctlData* arg = umockdev_ioctl_client_get_arg(client);
     const std::span report(arg->data, static_cast<std::size_t>(arg->data_len));
     self->waitWhileHung();
-    int error = self->gone_ ? ENODEV : self->live_.faults.hung ? ETIMEDOUT : 0;
+    int error = self->gone() ? ENODEV : self->live_.faults.hung ? ETIMEDOUT : 0;
     if (error == 0) {
         const auto reply =
             self->live_.with([&](sim::UsbDevice& usb) { return usb.interruptOut(report); });
@@ -105,7 +87,7 @@ gboolean HidrawNode::onWrite(UMockdevIoctlBase*, UMockdevIoctlClient* client, Hi
 }
 
 int HidrawNode::answer(unsigned long request, UMockdevIoctlData* arg) {
-    if (gone_) return -ENODEV;
+    if (gone()) return -ENODEV;
     const std::size_t size = _IOC_SIZE(request);
     UMockdevIoctlData* data = umockdev_ioctl_data_resolve(arg, 0, size, nullptr);
     if (!data) return -EFAULT;

@@ -1,6 +1,7 @@
 #include "tests/device/mock_bus.h"
 
 #include <umockdev.h>
+#include <unistd.h>
 
 #include <stdexcept>
 
@@ -26,8 +27,6 @@ std::string owned(gchar* text) {
     return copy;
 }
 
-constexpr const char* kHid = "0003:1209:0001.0001";
-
 }  // namespace
 
 MockBus::MockBus() : testbed_(umockdev_testbed_new()) {
@@ -46,11 +45,13 @@ MockRig::MockRig(MockBus& bus, sim::DeviceConfig config, int port)
 }
 
 MockRig::~MockRig() {
+    live_.faults.hung = false;  // whoever is stuck in a request comes back
     if (usbfs_) unplug();
 }
 
-std::string MockRig::usbNode() const { return "/dev/bus/usb/001/00" + std::to_string(port_ + 1); }
-std::string MockRig::hidNode() const { return "/dev/hidraw" + std::to_string(port_); }
+std::string MockRig::usbNode() const { return "/dev/bus/usb/001/" + std::to_string(number_); }
+std::string MockRig::hidName() const { return "0003:1209:0001.0" + std::to_string(number_); }
+std::string MockRig::hidNode() const { return "/dev/hidraw" + std::to_string(number_); }
 
 /// What sysfs and udev of a Linux say of such a device.
 std::string MockRig::description() {
@@ -62,7 +63,7 @@ std::string MockRig::description() {
     });
     const std::string port = std::to_string(port_);
     const std::string device = "/devices/usb1/1-" + port;
-    const std::string hid = device + "/1-" + port + ":1.0/" + kHid;
+    const std::string hid = device + "/1-" + port + ":1.0/" + hidName();
     const auto interface = [&](int number, const std::string& kind) {
         const std::string n = std::to_string(number);
         return "P: " + device + "/1-" + port + ":1." + n +
@@ -70,9 +71,9 @@ std::string MockRig::description() {
                "\\n\nA: bInterfaceClass=" + kind + "\\n\n\n";
     };
     return "P: " + device + "\nN: " + usbNode().substr(5) +
-           "\nE: SUBSYSTEM=usb\nE: DEVTYPE=usb_device\nE: DRIVER=usb\nE: BUSNUM=001\nE: DEVNUM=00" +
-           std::to_string(port_ + 1) + "\nE: DEVNAME=" + usbNode() +
-           "\nE: PRODUCT=1209/1/100\nA: busnum=1\\n\nA: devnum=" + std::to_string(port_ + 1) +
+           "\nE: SUBSYSTEM=usb\nE: DEVTYPE=usb_device\nE: DRIVER=usb\nE: BUSNUM=001\nE: DEVNUM=" +
+           std::to_string(number_) + "\nE: DEVNAME=" + usbNode() +
+           "\nE: PRODUCT=1209/1/100\nA: busnum=1\\n\nA: devnum=" + std::to_string(number_) +
            "\\n\nA: speed=480\\n\nA: bConfigurationValue=1\\n\nA: idVendor=1209\\n\n"
            "A: idProduct=0001\\n\nA: bcdDevice=0100\\n\nA: serial=" +
            serial_ + "\\n\nA: manufacturer=gonio\\n\nA: product=simulated rig\\n\nH: descriptors=" +
@@ -84,12 +85,13 @@ std::string MockRig::description() {
            "HID_NAME=gonio simulated rig\\nHID_PHYS=usb-1-" + port +
            "/input0\\nHID_UNIQ=" + serial_ +
            "\\n\nH: report_descriptor=" + hex(sim::UsbDevice::reportDescriptor()) +
-           "\n\nP: " + hid + "/hidraw/hidraw" + port + "\nN: hidraw" + port +
-           "\nE: SUBSYSTEM=hidraw\nE: DEVNAME=" + hidNode() + "\nL: device=../../../" + kHid +
+           "\n\nP: " + hid + "/hidraw" + hidNode().substr(4) + "\nN: " + hidNode().substr(5) +
+           "\nE: SUBSYSTEM=hidraw\nE: DEVNAME=" + hidNode() + "\nL: device=../../../" + hidName() +
            "\n\n";
 }
 
 void MockRig::plug() {
+    number_ = number_ == 0 ? 100 + port_ : number_ + 10;
     usbfs_ = std::make_unique<UsbfsNode>(live_, bus_.testbed(), usbNode());
     hidraw_ = std::make_unique<HidrawNode>(live_, bus_.testbed(), hidNode());
     GError* error = nullptr;
@@ -108,16 +110,19 @@ void MockRig::unplug() {
     const std::string port = std::to_string(port_);
     const std::string device = "/sys/devices/usb1/1-" + port;
     const std::string interface = device + "/1-" + port + ":1.";
-    for (const std::string& path : {interface + "0/" + kHid + "/hidraw/hidraw" + port,
-                                    interface + "0/" + kHid,
+    for (const std::string& path : {interface + "0/" + hidName() + "/hidraw" + hidNode().substr(4),
+                                    interface + "0/" + hidName(),
                                     interface + "0",
                                     interface + "1",
                                     device}) {
         umockdev_testbed_uevent(bus_.testbed(), path.c_str(), "remove");
         umockdev_testbed_remove_device(bus_.testbed(), path.c_str());
     }
-    usbfs_.reset();
-    hidraw_.reset();
+    // umockdev leaves the nodes of a removed device behind.
+    unlink(bus_.real(usbNode()).c_str());
+    unlink(bus_.real(hidNode()).c_str());
+    pulled_.push_back(std::move(usbfs_));
+    pulled_.push_back(std::move(hidraw_));
 }
 
 }  // namespace gonio::device_test

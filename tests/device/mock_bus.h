@@ -13,6 +13,7 @@ typedef struct _UMockdevTestbed UMockdevTestbed;
 namespace gonio::device_test {
 
 class HidrawNode;
+class MockNode;
 class UsbfsNode;
 
 class MockBus {
@@ -47,11 +48,14 @@ public:
 
 private:
     [[nodiscard]] std::string description();
+    [[nodiscard]] std::string hidName() const;
 
     MockBus& bus_;
     LiveRig live_;
     std::string serial_;
     int port_;
+    int number_ = 0;  ///< of its nodes: another one each time it is plugged in
+    std::vector<std::unique_ptr<MockNode>> pulled_;  ///< still open to those who had them
     std::unique_ptr<UsbfsNode> usbfs_;
     std::unique_ptr<HidrawNode> hidraw_;
 };

@@ -45,15 +45,12 @@ bool takeOne(std::atomic<int>& counter) {
 }  // namespace
 
 UsbfsNode::UsbfsNode(LiveRig& live, UMockdevTestbed* testbed, std::string path)
-    : live_(live), testbed_(testbed), path_(std::move(path)), handler_(umockdev_ioctl_base_new()) {
-    g_signal_connect(handler_, "handle-ioctl", G_CALLBACK(onIoctl), this);
-    umockdev_testbed_attach_ioctl(testbed_, path_.c_str(), handler_, nullptr);
+    : MockNode(testbed, std::move(path)), live_(live) {
+    g_signal_connect(handler(), "handle-ioctl", G_CALLBACK(onIoctl), this);
 }
 
 UsbfsNode::~UsbfsNode() {
-    g_signal_handlers_disconnect_by_data(handler_, this);
-    umockdev_testbed_detach_ioctl(testbed_, path_.c_str(), nullptr);
-    g_object_unref(handler_);
+    retire();
     const std::scoped_lock lock(mutex_);
     forget(waiting_);
     forget(done_);
@@ -65,8 +62,8 @@ void UsbfsNode::forget(std::deque<Urb>& urbs) {
 }
 
 void UsbfsNode::pull() {
+    MockNode::pull();
     const std::scoped_lock lock(mutex_);
-    gone_ = true;
     for (Urb& urb : waiting_) {
         urb.status = -EPROTO;  // as most unplugs on a real kernel show
         done_.push_back(urb);
@@ -84,14 +81,14 @@ gboolean UsbfsNode::onIoctl(UMockdevIoctlBase*, UMockdevIoctlClient* client, Usb
 int UsbfsNode::answer(unsigned long request, UMockdevIoctlData* arg) {
     std::unique_lock lock(mutex_);
     if (request == USBDEVFS_REAPURBNDELAY) {
-        if (done_.empty() && !advanceBulk() && !gone_) {
+        if (done_.empty() && !advanceBulk() && !gone()) {
             lock.unlock();
             std::this_thread::sleep_for(500us);
             lock.lock();
         }
         return reap(arg);
     }
-    if (gone_) return ENODEV;
+    if (gone()) return ENODEV;
     switch (request) {
         case USBDEVFS_GET_CAPABILITIES:
             *resolved<std::uint32_t>(arg) =
@@ -200,7 +197,7 @@ bool UsbfsNode::advanceBulk() {
 }
 
 int UsbfsNode::reap(UMockdevIoctlData* arg) {
-    if (done_.empty()) return gone_ ? ENODEV : EAGAIN;
+    if (done_.empty()) return gone() ? ENODEV : EAGAIN;
     Urb urb = std::move(done_.front());
     done_.pop_front();
     usbdevfs_urb& told = urbOf(urb.data);

@@ -4,26 +4,22 @@
 // millisecond, since nothing else keeps libusb from asking without pause (the node is a plain file,
 // which poll() always finds ready).
 
-#include <umockdev.h>
-
 #include <deque>
 #include <mutex>
 #include <string>
 
 #include "tests/device/live_rig.h"
+#include "tests/device/mock_node.h"
 
 struct usbdevfs_urb;
 
 namespace gonio::device_test {
 
-class UsbfsNode {
+class UsbfsNode : public MockNode {
 public:
     UsbfsNode(LiveRig& live, UMockdevTestbed* testbed, std::string path);
-    ~UsbfsNode();
-    UsbfsNode(const UsbfsNode&) = delete;
-    UsbfsNode& operator=(const UsbfsNode&) = delete;
-    /// From now on the device is gone.
-    void pull();
+    ~UsbfsNode() override;
+    void pull() override;
 
 private:
     struct Urb {
@@ -43,12 +39,8 @@ private:
     static void forget(std::deque<Urb>& urbs);
 
     LiveRig& live_;
-    UMockdevTestbed* testbed_;
-    std::string path_;
-    UMockdevIoctlBase* handler_;
     std::mutex mutex_;
     std::deque<Urb> waiting_, done_;
-    bool gone_ = false;
 };
 
 }  // namespace gonio::device_test

@@ -1,0 +1,46 @@
+#pragma once
+// A device node of the test bed whose requests are answered here. It outlives those who have it
+// open: pulled means that it answers ENODEV, not that it is no more.
+
+#include <umockdev.h>
+
+#include <atomic>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace gonio::device_test {
+
+class MockNode {
+public:
+    MockNode(UMockdevTestbed* testbed, std::string path);
+    /// Waits until nobody has it open, one second at most.
+    virtual ~MockNode();
+    MockNode(const MockNode&) = delete;
+    MockNode& operator=(const MockNode&) = delete;
+    /// From now on the device is gone.
+    virtual void pull();
+
+protected:
+    [[nodiscard]] UMockdevIoctlBase* handler() const { return handler_; }
+    [[nodiscard]] UMockdevTestbed* testbed() const { return testbed_; }
+    [[nodiscard]] const std::string& path() const { return path_; }
+    [[nodiscard]] bool isOpen();
+    [[nodiscard]] bool gone() const { return gone_; }
+    /// Somebody opens it whom nobody came before.
+    virtual void firstOpened() {}
+    /// A derived class calls it first thing when it ends: no request comes after it.
+    void retire();
+
+private:
+    static void onOpen(UMockdevIoctlBase*, UMockdevIoctlClient* client, MockNode* self);
+
+    UMockdevTestbed* testbed_;
+    std::string path_;
+    UMockdevIoctlBase* handler_;
+    std::mutex mutex_;
+    std::vector<UMockdevIoctlClient*> clients_;  ///< of the files that were open last time
+    std::atomic<bool> gone_{false};
+};
+
+}  // namespace gonio::device_test

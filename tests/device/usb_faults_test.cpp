@@ -1,0 +1,263 @@
+// The real USB code when the rig, the cable or the system does what it should not.
+
+#include <sys/fsuid.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <thread>
+
+#include "tests/device/usb_rig_fixture.h"
+
+namespace gonio::device_test {
+namespace {
+
+using namespace std::chrono_literals;
+using driver::Rig;
+using driver::Transport;
+
+constexpr auto kDeadline = 1500ms;  // one second, and what a busy machine adds
+
+/// How long `call` takes.
+template <class Call>
+std::chrono::milliseconds timed(Call call) {
+    const auto begin = std::chrono::steady_clock::now();
+    call();
+    return std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now() -
+                                                                 begin);
+}
+
+class UsbFaults : public UsbRigTest {
+protected:
+    void SetUp() override {
+        mock.live().warmUp(kSmallWindow);
+        transport = opened();
+        ASSERT_TRUE(transport);
+        auto claimed = Rig::open(*transport, kSession);
+        ASSERT_TRUE(claimed) << claimed.error().message;
+        rig.emplace(std::move(*claimed));
+        ASSERT_TRUE(rig->configure(kSmallWindow));
+    }
+    /// The frames of a rig that nothing disturbs.
+    std::vector<Frame> undisturbed(const driver::CaptureRequest& request) {
+        sim::InProcessDoor door(rigConfig());
+        door.device().place(mattGrey());
+        auto twin = Rig::open(door, kSession);
+        EXPECT_TRUE(twin);
+        EXPECT_TRUE(twin->configure(kSmallWindow));
+        auto capture = twin->capture(request);
+        EXPECT_TRUE(capture);
+        return std::move(capture->frames);
+    }
+    /// Captures, with what was set wrong before, and compares.
+    driver::Capture repaired(const driver::CaptureRequest& request) {
+        auto capture = rig->capture(request);
+        EXPECT_TRUE(capture) << capture.error().message;
+        if (!capture) return {};
+        const auto wanted = undisturbed(request);
+        EXPECT_EQ(capture->size(), wanted.size());
+        for (std::size_t i = 0; i < capture->size(); ++i)
+            EXPECT_EQ((*capture)[i].pixels, wanted[i].pixels) << "frame " << i;
+        return std::move(*capture);
+    }
+
+    std::unique_ptr<Transport> transport;
+    std::optional<Rig> rig;  // after its transport: ends before it
+};
+
+TEST_F(UsbFaults, AStallCostsAChunkAndNoFrame) {
+    mock.live().with([](sim::UsbDevice& usb) { usb.haltStream(); });
+    repaired(litFrames(1, 3));
+}
+
+TEST_F(UsbFaults, TheThirdStallInTenSecondsIsAFailure) {
+    for (std::uint64_t step = 1; step <= 2; ++step) {
+        mock.live().with([](sim::UsbDevice& usb) { usb.haltStream(); });
+        repaired(litFrames(step));
+    }
+    mock.live().with([](sim::UsbDevice& usb) { usb.haltStream(); });
+    const auto capture = rig->capture(litFrames(3));
+    ASSERT_FALSE(capture);
+    EXPECT_EQ(capture.error().kind, ErrorKind::Device);
+    EXPECT_NE(capture.error().message.find("three times"), std::string::npos)
+        << capture.error().message;
+}
+
+TEST_F(UsbFaults, AShortTransferIsSentAgain) {
+    mock.faults().shorten = 2;
+    const auto capture = repaired(litFrames(1, 3));
+    EXPECT_EQ(capture.anomalies.badLengths, 2U);
+    EXPECT_GE(capture.resends, 1);
+}
+
+TEST_F(UsbFaults, AnOverlongTransferIsDroppedAndSentAgain) {
+    repaired(litFrames(1));
+    mock.faults().overflow = 1;
+    const auto capture = repaired(litFrames(2, 3));
+    EXPECT_EQ(capture.anomalies.lostChunks, 1U);
+    EXPECT_GE(capture.resends, 1);
+}
+
+TEST_F(UsbFaults, AnErrorOfTheBusIsSurvivedWhileTheRigAnswers) {
+    mock.faults().protocolErrors = 1;
+    repaired(litFrames(1, 3));
+}
+
+TEST_F(UsbFaults, AResetStreamGoesOnWithWholeFrames) {
+    repaired(litFrames(1, 2));
+    ASSERT_TRUE(transport->resetStream());
+    repaired(litFrames(2, 2));
+}
+
+TEST_F(UsbFaults, WaitingForNothingEndsAtItsDeadline) {
+    const auto took = timed([&] {
+        const auto chunk = transport->readBulk(150ms);
+        ASSERT_TRUE(chunk);
+        EXPECT_FALSE(*chunk);
+    });
+    EXPECT_GE(took, 150ms);
+    EXPECT_LT(took, 400ms);
+}
+
+TEST_F(UsbFaults, ASilentRigMakesEveryCallEndByItsDeadline) {
+    mock.faults().hung = true;
+    EXPECT_LT(timed([&] { EXPECT_TRUE(transport->readInput(100ms)); }), 400ms);
+    EXPECT_LT(timed([&] { EXPECT_TRUE(transport->readBulk(100ms)); }), 400ms);
+    EXPECT_LT(timed([&] {
+                  const auto report = transport->getFeature(1);
+                  ASSERT_FALSE(report);
+                  EXPECT_EQ(report.error().kind, ErrorKind::Device);
+              }),
+              kDeadline);
+    EXPECT_LT(timed([&] { EXPECT_FALSE(transport->setFeature({2})); }), 100ms);
+    EXPECT_LT(timed([&] { EXPECT_FALSE(transport->write({0x20})); }), 100ms);
+    rig.reset();
+    EXPECT_LT(timed([&] { transport.reset(); }), kDeadline);
+}
+
+TEST_F(UsbRigTest, ClosingEndsInASecondWhenTheRigHangs) {
+    auto transport = opened();
+    ASSERT_TRUE(transport);
+    mock.faults().hung = true;
+    EXPECT_LT(timed([&] { transport.reset(); }), kDeadline);
+}
+
+TEST_F(UsbFaults, UnpluggingIsADeviceErrorAtOnce) {
+    std::jthread puller([&] {
+        std::this_thread::sleep_for(300ms);
+        mock.unplug();
+    });
+    std::optional<Error> error;
+    const auto took = timed([&] {
+        for (std::uint64_t step = 1; !error && step < 200; ++step) {
+            const auto capture = rig->capture(litFrames(step));
+            if (!capture) error = capture.error();
+        }
+    });
+    puller.join();
+    ASSERT_TRUE(error);
+    EXPECT_EQ(error->kind, ErrorKind::Device);
+    EXPECT_LT(took, 300ms + kDeadline);
+    rig.reset();
+    EXPECT_LT(timed([&] { transport.reset(); }), kDeadline);
+    const auto gone = driver::openUsb();
+    ASSERT_FALSE(gone);
+    EXPECT_EQ(gone.error().kind, ErrorKind::NoRig);
+}
+
+TEST_F(UsbFaults, PluggedInAgainItMeasuresTheSame) {
+    repaired(litFrames(1, 2));
+    const auto boot = rig->identify().ident.bootId;
+    mock.unplug();
+    EXPECT_FALSE(rig->capture(litFrames(2)));
+    rig.reset();
+    transport.reset();
+    mock.plug();
+    transport = opened();
+    ASSERT_TRUE(transport);
+    auto again = Rig::open(*transport, kSession);
+    ASSERT_TRUE(again) << again.error().message;
+    rig.emplace(std::move(*again));
+    EXPECT_EQ(rig->identify().ident.bootId, boot);
+    ASSERT_TRUE(rig->configure(kSmallWindow));
+    repaired(litFrames(2, 2));
+}
+
+TEST_F(UsbRigTest, AFullSystemHalvesTheRingAndStillMeasures) {
+    mock.live().warmUp(kSmallWindow);
+    mock.faults().mostTransfers = 2;
+    testing::internal::CaptureStderr();
+    const auto transport = opened();
+    ASSERT_TRUE(transport);
+    auto rig = Rig::open(*transport, kSession);
+    ASSERT_TRUE(rig) << rig.error().message;
+    ASSERT_TRUE(rig->configure(kSmallWindow));
+    const auto capture = rig->capture(litFrames(1, 4));
+    const std::string log = testing::internal::GetCapturedStderr();
+    ASSERT_TRUE(capture) << capture.error().message;
+    EXPECT_EQ(capture->anomalies, driver::Anomalies{});
+    EXPECT_NE(log.find("usbfs_memory_mb"), std::string::npos) << log;
+}
+
+TEST_F(UsbRigTest, WithoutMemoryForAnyTransferItSaysHowToGetSome) {
+    mock.faults().mostTransfers = 0;
+    const auto transport = driver::openUsb();
+    ASSERT_FALSE(transport);
+    EXPECT_EQ(transport.error().kind, ErrorKind::Device);
+    EXPECT_NE(transport.error().message.find("usbfs_memory_mb"), std::string::npos);
+}
+
+TEST_F(UsbRigTest, ARigThatAnotherProgramHasIsBusy) {
+    mock.faults().claimed = true;
+    const auto transport = driver::openUsb();
+    ASSERT_FALSE(transport);
+    EXPECT_EQ(transport.error().kind, ErrorKind::Busy);
+    EXPECT_NE(transport.error().message.find("another program"), std::string::npos);
+}
+
+/// This thread, and those it starts, without the right to open what only root may.
+class WithoutRights {
+public:
+    WithoutRights() { setfsuid(kNobody); }
+    ~WithoutRights() { setfsuid(geteuid()); }
+    WithoutRights(const WithoutRights&) = delete;
+    WithoutRights& operator=(const WithoutRights&) = delete;
+
+private:
+    static constexpr uid_t kNobody = 65534;
+};
+
+TEST_F(UsbRigTest, WithoutPermissionItNamesTheUdevRule) {
+    ASSERT_EQ(chmod(bus.real("").c_str(), 0777), 0);
+    // umockdev's own socket must stay within reach, whatever becomes of the node.
+    ASSERT_EQ(chmod(bus.real("/ioctl" + mock.usbNode()).c_str(), 0777), 0);
+    ASSERT_EQ(chmod(bus.real(mock.usbNode()).c_str(), 0), 0);
+    const WithoutRights unprivileged;
+    const auto transport = driver::openUsb();
+    ASSERT_FALSE(transport);
+    EXPECT_EQ(transport.error().kind, ErrorKind::Busy);
+    EXPECT_NE(transport.error().message.find("ATTRS{idVendor}==\"1209\""), std::string::npos)
+        << transport.error().message;
+    const auto rigs = driver::listUsb();
+    ASSERT_TRUE(rigs);
+    ASSERT_EQ(rigs->size(), 1U);
+    EXPECT_EQ(rigs->front().serial, "SIM-0042");
+    EXPECT_NE(rigs->front().obstacle.find("udev"), std::string::npos);
+}
+
+TEST_F(UsbRigTest, OfTwoRigsTheSerialNumberSaysWhich) {
+    MockRig other(bus, rigConfig("SIM-0043"), 2);
+    const auto unsure = driver::openUsb();
+    ASSERT_FALSE(unsure);
+    EXPECT_EQ(unsure.error().kind, ErrorKind::Usage);
+    EXPECT_NE(unsure.error().message.find("SIM-0043"), std::string::npos);
+    const auto sure = driver::openUsb({.serial = "SIM-0043"});
+    ASSERT_TRUE(sure) << sure.error().message;
+    EXPECT_EQ((*sure)->strings().serial, "SIM-0043");
+    EXPECT_TRUE(Rig::open(**sure, kSession));
+    const auto third = driver::openUsb({.serial = "SIM-0044"});
+    ASSERT_FALSE(third);
+    EXPECT_EQ(third.error().kind, ErrorKind::NoRig);
+}
+
+}  // namespace
+}  // namespace gonio::device_test
