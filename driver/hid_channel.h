@@ -5,7 +5,7 @@
 // failure is final: the thread may be stuck in the kernel then, and is left behind with what it
 // holds.
 
-#include <array>
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>

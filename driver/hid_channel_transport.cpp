@@ -3,6 +3,7 @@
 
 #include <cerrno>
 #include <system_error>
+#include <utility>
 
 #include "driver/hid_channel.h"
 #include "driver/usb_find.h"

@@ -1,5 +1,6 @@
 #include <libusb.h>
 
+#include <algorithm>
 #include <array>
 #include <fstream>
 

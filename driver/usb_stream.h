@@ -8,6 +8,7 @@
 // stall or error in ten seconds is a failure, and a failure is final.
 
 #include <array>
+#include <chrono>
 #include <condition_variable>
 #include <mutex>
 #include <optional>

@@ -1,6 +1,8 @@
 #include <libusb.h>
 
 #include <algorithm>
+#include <memory>
+#include <utility>
 
 #include "driver/protocol/chunk.h"
 #include "driver/usb_stream.h"
