@@ -8,6 +8,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::string_view kSampleExtension = ".gonio";
+constexpr std::string_view kRawExtension = ".graw";
+
 fs::path defaultRoot() {
     const auto variable = [](const char* name) -> std::string {
         const char* value = std::getenv(name);
@@ -59,11 +62,37 @@ Result<fs::path> Store::sample(std::string_view name, std::string_view extension
     return root_ / "samples" / (std::string(name) + std::string(extension));
 }
 
+Result<std::string> Store::setAside(const std::string& name) const {
+    const auto file = [&](const std::string& of, std::string_view extension) {
+        return root_ / "samples" / (of + std::string(extension));
+    };
+    const auto taken = [&](const std::string& of) {
+        return fs::exists(file(of, kSampleExtension)) || fs::exists(file(of, kRawExtension));
+    };
+    if (!taken(name)) return std::string();
+    std::string kept;
+    for (int number = 1; kept.empty() || taken(kept); ++number) {
+        kept = name + "." + std::to_string(number);
+    }
+    for (const std::string_view extension : {kRawExtension, kSampleExtension}) {
+        if (!fs::exists(file(name, extension))) continue;
+        std::error_code failed;
+        fs::rename(file(name, extension), file(kept, extension), failed);
+        if (failed) {
+            return Error{ErrorKind::File,
+                         "store: cannot keep the earlier sample '" + name + "' as '" + kept +
+                             "': " + failed.message()};
+        }
+    }
+    return kept;
+}
+
 std::vector<std::string> Store::sampleNames() const {
     std::vector<std::string> names;
     std::error_code ignored;
     for (const auto& entry : fs::directory_iterator(root_ / "samples", ignored)) {
-        if (entry.path().extension() == ".gonio") names.push_back(entry.path().stem().string());
+        if (entry.path().extension() == kSampleExtension)
+            names.push_back(entry.path().stem().string());
     }
     std::sort(names.begin(), names.end());
     return names;

@@ -29,6 +29,9 @@ public:
     [[nodiscard]] Result<std::filesystem::path> sample(std::string_view name,
                                                        std::string_view extension) const;
     [[nodiscard]] std::vector<std::string> sampleNames() const;
+    /// Makes room for a sample that is measured again: what is there of NAME is kept as NAME.1, or
+    /// the first number that is free. That name; empty when there was nothing.
+    [[nodiscard]] Result<std::string> setAside(const std::string& name) const;
 
 private:
     explicit Store(std::filesystem::path root) : root_(std::move(root)) {}

@@ -550,8 +550,7 @@ const RateImages& Device::rates(int led) {
     }
     const auto found = rates_.find(led);
     if (found != rates_.end()) return found->second;
-    return rates_
-        .emplace(led, rateImages(placement_, config_.errors, optics_, *field_, led))
+    return rates_.emplace(led, rateImages(placement_, config_.errors, optics_, *field_, led))
         .first->second;
 }
 

@@ -12,6 +12,7 @@
 #include "daemon/cli/progress.h"
 #include "daemon/measurement.h"
 #include "daemon/sim_bench.h"
+#include "proc/core/log.h"
 #include "proc/core/number_text.h"
 #include "proc/formats/gonio_exr.h"
 
@@ -263,6 +264,11 @@ Result<void> measure(const CommonOptions& common, const MeasureOptions& options)
                                           std::move(info));
     set.info.computeSeconds += calibrating.elapsed().count();
 
+    const Result<std::string> earlier = session.store.setAside(options.name);
+    if (!earlier) return earlier.error();
+    if (!earlier->empty()) {
+        log::warning("sample '" + options.name + "' was there; it is kept as '" + *earlier + "'");
+    }
     // The raw capture first: it is what cannot be had again.
     proc::RawCapture raw{.info = rawInfo(set.info), .states = {}};
     raw.states = captured->raw.states;

@@ -25,8 +25,7 @@ TEST(Material, ModelAnswersAtTheLedsIncidences) {
 }
 
 TEST(Material, ZemaxFileKeepsItsOwnIncidences) {
-    const auto material =
-        openMaterial(GONIO_SOURCE_DIR "/config/demo/AnoBlackEC1onAlum.bsdf", "");
+    const auto material = openMaterial(GONIO_SOURCE_DIR "/config/demo/AnoBlackEC1onAlum.bsdf", "");
     ASSERT_TRUE(material) << material.error().message;
     EXPECT_EQ(material->kind, "zemax");
     ASSERT_NE(material->table, nullptr);

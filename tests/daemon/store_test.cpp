@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <iterator>
 
 #include "daemon/sim_bench.h"
 #include "tests/support/temp_folder.h"
@@ -31,7 +32,8 @@ TEST(Store, SampleNamesStayInsideTheStore) {
     const test::TempFolder folder;
     const auto store = Store::open(folder.path());
     ASSERT_TRUE(store);
-    for (const std::string& good : {std::string("a"), std::string("Tile-7_b.2"), std::string("0"), std::string(64, 'x')}) {
+    for (const std::string& good :
+         {std::string("a"), std::string("Tile-7_b.2"), std::string("0"), std::string(64, 'x')}) {
         const auto path = store->sample(good, ".gonio");
         ASSERT_TRUE(path) << good;
         EXPECT_EQ(*path, folder / "samples" / (good + ".gonio"));
@@ -54,6 +56,34 @@ TEST(Store, ListsSamplesByName) {
         std::ofstream(folder / "samples" / name) << "x";
     }
     EXPECT_EQ(store->sampleNames(), (std::vector<std::string>{"a", "b"}));
+}
+
+TEST(Store, SampleThatIsMeasuredAgainIsKept) {
+    const test::TempFolder folder;
+    const auto store = Store::open(folder.path());
+    ASSERT_TRUE(store);
+    const auto write = [&](const std::string& file, const std::string& text) {
+        std::ofstream(folder / "samples" / file) << text;
+    };
+    const auto read = [&](const std::string& file) {
+        std::ifstream in(folder / "samples" / file);
+        return std::string(std::istreambuf_iterator<char>(in), {});
+    };
+    EXPECT_EQ(*store->setAside("a"), "");
+    for (const std::string run : {"1", "2", "3"}) {
+        write("a.gonio", "sample " + run);
+        write("a.graw", "raw " + run);
+        EXPECT_EQ(*store->setAside("a"), "a." + run);
+        EXPECT_FALSE(std::filesystem::exists(folder / "samples/a.gonio"));
+        EXPECT_FALSE(std::filesystem::exists(folder / "samples/a.graw"));
+    }
+    for (const std::string run : {"1", "2", "3"}) {
+        EXPECT_EQ(read("a." + run + ".gonio"), "sample " + run);
+        EXPECT_EQ(read("a." + run + ".graw"), "raw " + run);
+    }
+    write("a.graw", "raw alone");  // a run that died between its two files
+    EXPECT_EQ(*store->setAside("a"), "a.4");
+    EXPECT_EQ(read("a.4.graw"), "raw alone");
 }
 
 TEST(SimState, SurvivesTheStore) {

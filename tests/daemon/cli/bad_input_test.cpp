@@ -152,9 +152,8 @@ TEST_F(BadInput, BrokenStoreIsNamed) {
 
 TEST_F(BadInput, BrokenProfileIsNamedWithItsKey) {
     const std::string profile = file("rig.toml", "name = \"x\"\n[sensor]\nelectrons_per_dn = -1\n");
-    expectRefused(gonio({"measure", "x", "--profile", profile}),
-                  kFile,
-                  {profile, "sensor.electrons_per_dn"});
+    expectRefused(
+        gonio({"measure", "x", "--profile", profile}), kFile, {profile, "sensor.electrons_per_dn"});
     const std::string torn = file("torn.toml", "name = \n");
     expectRefused(gonio({"measure", "x", "--profile", torn}), kFile, {torn});
 }

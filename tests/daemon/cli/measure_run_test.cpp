@@ -81,13 +81,14 @@ void expectAccurate(const Json& sample) {
     EXPECT_GT(sample["cells"], 40'000) << sample;
 }
 
-/// A measured sample can be looked at, evaluated, exported and plotted, and says the same each time.
+/// A measured sample can be looked at, evaluated, exported and plotted, and says the same each
+/// time.
 void expectUsable(const Bench& gonio) {
     const Json info = gonio({"info", "sample:s1"});
     EXPECT_EQ(info["schema"], "gonio/info/1");
     ASSERT_EQ(info["leds"].size(), 4U);
-    // At normal incidence Oren-Nayar is (albedo / pi) A, A = 1 - sigma^2 / (2 sigma^2 + 0.66); within
-    // 75 degrees lie sin^2(75) of its light. 0.2 % for noise and lens.
+    // At normal incidence Oren-Nayar is (albedo / pi) A, A = 1 - sigma^2 / (2 sigma^2 + 0.66);
+    // within 75 degrees lie sin^2(75) of its light. 0.2 % for noise and lens.
     const double expected = 0.8 * (1 - 0.09 / 0.84) * std::pow(std::sin(75 * M_PI / 180), 2);
     EXPECT_NEAR(
         info["leds"][0]["g"]["reflected_fraction_within_measured"], expected, 0.002 * expected);
@@ -110,6 +111,11 @@ void expectUsable(const Bench& gonio) {
     const std::string copy = gonio.program / "copy.gonio";
     gonio({"convert", "sample:s1", copy});
     EXPECT_EQ(test::textOf(copy), test::textOf(gonio.program / "store/samples/s1.gonio"));
+
+    const Json raw = gonio({"info", (gonio.program / "store/samples/s1.graw").string()});
+    ASSERT_EQ(raw["states"].size(), 12U);
+    EXPECT_EQ(raw["about"]["name"], "s1");
+    EXPECT_GE(raw["states"][0]["bracket"].size(), 2U);
 
     const Json plots = gonio({"plot", "sample:s1", "-o", gonio.program / "plots"});
     ASSERT_EQ(plots["files"].size(), 2U);
