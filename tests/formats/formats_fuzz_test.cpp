@@ -24,7 +24,7 @@ namespace {
 
 using test::refuses;
 
-int cases(int usual) { return std::getenv("GONIO_NIGHTLY") != nullptr ? 25 * usual : usual; }
+int cases(int usual) { return std::getenv("GONIO_NIGHTLY") != nullptr ? 8 * usual : usual; }
 
 std::size_t below(std::mt19937_64& random, std::size_t count) {
     return static_cast<std::size_t>(random() % count);
