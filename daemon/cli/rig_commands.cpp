@@ -14,6 +14,7 @@
 #include "daemon/sim_bench.h"
 #include "proc/core/log.h"
 #include "proc/core/number_text.h"
+#include "proc/formats/file_bytes.h"
 #include "proc/formats/gonio_exr.h"
 
 namespace gonio::daemon {
@@ -66,7 +67,6 @@ public:
     RigSession(const RigSession&) = delete;
     RigSession& operator=(const RigSession&) = delete;
 
-    [[nodiscard]] fs::path folder() const { return store.rig(state.serial); }
     [[nodiscard]] double rigSeconds() const { return onRig.elapsed().count(); }
     [[nodiscard]] Bench bench(Progress& progress) {
         return {.rig = rig,
@@ -115,6 +115,10 @@ std::map<std::string, std::string> rawInfo(const proc::SampleInfo& info) {
             {"software", info.softwareVersion}};
 }
 
+Result<std::string> rawBytes(const proc::SampleInfo& info, std::vector<proc::RawState> states) {
+    return proc::encodeGraw({.info = rawInfo(info), .states = std::move(states)});
+}
+
 void finish(proc::SampleInfo& info, const RigSession& session, const Captured& captured) {
     info.rigSeconds = session.rigSeconds();
     info.computeSeconds = captured.compute.count();
@@ -147,7 +151,10 @@ Result<void> calibrateMirror(const CommonOptions& common, RigSession& session) {
     Result<LensRecord> lens = measureLens(session.bench(progress), place);
     if (!lens) return lens.error();
     lens->dateUtc = utcNow();
-    if (Result<void> kept = writeLens(session.folder(), *lens); !kept) return kept;
+    const auto kept = session.store.addCalibration(
+        {.rig = session.state.serial, .kind = "mirror", .dateUtc = lens->dateUtc},
+        {.file = encodeLens(*lens)});
+    if (!kept) return kept.error();
     print(common,
           {{"schema", "gonio/calibrate-mirror/1"},
            {"rig", session.state.serial},
@@ -155,7 +162,7 @@ Result<void> calibrateMirror(const CommonOptions& common, RigSession& session) {
            {"rms_px", lens->fit.rmsPixels},
            {"worst_px", lens->fit.worstPixels},
            {"rig_seconds", session.rigSeconds()},
-           {"file", (session.folder() / "lens.json").string()}},
+           {"file", kept->file.string()}},
           "lens map of " + session.state.serial + ": " + std::to_string(lens->spots) +
               " mirror spots, " + fixed(lens->fit.rmsPixels, 3) + " px rms, worst " +
               fixed(lens->fit.worstPixels, 3) + " px");
@@ -164,42 +171,45 @@ Result<void> calibrateMirror(const CommonOptions& common, RigSession& session) {
 
 Result<void> calibrateTile(const CommonOptions& common, RigSession& session, bool white) {
     const std::string name = white ? "white" : "black";
-    const Result<LensRecord> lens = readLens(session.folder());
+    const Result<LensRecord> lens = loadLens(session.store, session.state.serial);
     if (!lens) return lens.error();
     const Bench probe{
         session.rig, session.profile, session.state.nextPlanStep, session.computer, {}};
     Progress progress(name, placementSteps(probe), session.computer, !common.quiet);
-    const Result<Captured> captured = measurePlacement(session.bench(progress),
-                                                       lens->fit.map,
-                                                       white ? kWhiteBracket : kBlackBracket,
-                                                       2 * kDarkFrames);
+    Result<Captured> captured = measurePlacement(session.bench(progress),
+                                                 lens->fit.map,
+                                                 white ? kWhiteBracket : kBlackBracket,
+                                                 2 * kDarkFrames);
     if (!captured) return captured.error();
     if (white) {
-        const Result<ReferenceRecord> black = readSignals(session.folder(), "black");
+        const Result<ReferenceRecord> black =
+            loadReference(session.store, session.state.serial, "black");
         if (!black) return black.error();
         if (Result<void> bright = checkWhite(captured->signals, black->signals); !bright)
             return bright;
     }
     proc::SampleInfo info = session.info(name);
     finish(info, session, *captured);
-    const std::vector<Radians> leds = session.rig.identify().ledAngles;
-    const fs::path folder = session.folder();
-    if (Result<void> kept = writeSignals(folder, name, info, leds, captured->signals); !kept)
-        return kept;
-    proc::RawCapture raw{.info = rawInfo(info), .states = {}};
-    raw.states = captured->raw.states;
-    if (Result<void> kept = proc::writeGraw(folder / (name + ".graw"), raw); !kept) return kept;
+    const std::size_t states = captured->raw.states.size();
+    const Result<std::string> raw = rawBytes(info, std::move(captured->raw.states));
+    if (!raw) return raw.error();
+    const Result<std::string> bytes =
+        encodeReference({info, captured->signals}, session.rig.identify().ledAngles);
+    if (!bytes) return bytes.error();
+    const auto kept = session.store.addCalibration(
+        {.rig = session.state.serial, .kind = name, .dateUtc = info.dateUtc},
+        {.file = *bytes, .raw = *raw});
+    if (!kept) return kept.error();
     print(common,
           {{"schema", "gonio/calibrate-" + name + "/1"},
            {"rig", session.state.serial},
-           {"states", captured->raw.states.size()},
+           {"states", states},
            {"chi_square_per_freedom", captured->chiSquarePerFreedom},
            {"rig_seconds", info.rigSeconds},
            {"compute_seconds", info.computeSeconds},
-           {"file", (folder / (name + ".gonio")).string()}},
-          name + " reference of " + session.state.serial + ": " +
-              std::to_string(captured->raw.states.size()) + " states in " +
-              fixed(info.rigSeconds, 1) + " s on the rig");
+           {"file", kept->file.string()}},
+          name + " reference of " + session.state.serial + ": " + std::to_string(states) +
+              " states in " + fixed(info.rigSeconds, 1) + " s on the rig");
     return {};
 }
 
@@ -231,15 +241,14 @@ Result<void> measure(const CommonOptions& common, const MeasureOptions& options)
     const auto opened = RigSession::open(common, options.profile);
     if (!opened) return opened.error();
     RigSession& session = **opened;
-    const auto file = session.store.sample(options.name, ".gonio");
-    if (!file) return file.error();
-    const auto rawFile = session.store.sample(options.name, ".graw");
-    if (!rawFile) return rawFile.error();
-    const Result<LensRecord> lens = readLens(session.folder());
+    if (Result<void> good = checkSampleName(options.name); !good) return good;
+    const Result<LensRecord> lens = loadLens(session.store, session.state.serial);
     if (!lens) return lens.error();
-    const Result<ReferenceRecord> black = readSignals(session.folder(), "black");
+    const Result<ReferenceRecord> black =
+        loadReference(session.store, session.state.serial, "black");
     if (!black) return black.error();
-    const Result<ReferenceRecord> white = readSignals(session.folder(), "white");
+    const Result<ReferenceRecord> white =
+        loadReference(session.store, session.state.serial, "white");
     if (!white) return white.error();
     const Result<References> certified = loadReferences(session.profile);
     if (!certified) return certified.error();
@@ -247,7 +256,7 @@ Result<void> measure(const CommonOptions& common, const MeasureOptions& options)
     const Bench probe{
         session.rig, session.profile, session.state.nextPlanStep, session.computer, {}};
     Progress progress(options.name, placementSteps(probe), session.computer, !common.quiet);
-    const Result<Captured> captured = measurePlacement(
+    Result<Captured> captured = measurePlacement(
         session.bench(progress), lens->fit.map, sampleBracket(options.effort), kDarkFrames);
     if (!captured) return captured.error();
     proc::SampleInfo info = session.info(options.name);
@@ -264,26 +273,28 @@ Result<void> measure(const CommonOptions& common, const MeasureOptions& options)
                                           std::move(info));
     set.info.computeSeconds += calibrating.elapsed().count();
 
-    const Result<std::string> earlier = session.store.setAside(options.name);
-    if (!earlier) return earlier.error();
-    if (!earlier->empty()) {
-        log::warning("sample '" + options.name + "' was there; it is kept as '" + *earlier + "'");
+    const Result<std::string> raw = rawBytes(set.info, std::move(captured->raw.states));
+    if (!raw) return raw.error();
+    const Result<std::string> bytes = proc::encodeGonio(set);
+    if (!bytes) return bytes.error();
+    const auto kept = session.store.addSample(
+        {.name = options.name, .rig = session.state.serial, .dateUtc = set.info.dateUtc},
+        {.file = *bytes, .raw = *raw});
+    if (!kept) return kept.error();
+    if (!kept->movedTo.empty()) {
+        log::warning("sample '" + options.name + "' was there; it is kept as '" + kept->movedTo +
+                     "'");
     }
-    // The raw capture first: it is what cannot be had again.
-    proc::RawCapture raw{.info = rawInfo(set.info), .states = {}};
-    raw.states = captured->raw.states;
-    if (Result<void> kept = proc::writeGraw(*rawFile, raw); !kept) return kept;
-    if (Result<void> kept = proc::writeGonio(*file, set); !kept) return kept;
     if (!options.output.empty()) {
-        if (Result<void> kept = proc::writeGonio(options.output, set); !kept) return kept;
+        if (Result<void> copied = proc::writeFile(options.output, *bytes); !copied) return copied;
     }
     const int cells = measuredCells(set);
     const double achieved = set.info.achievedUncertainty.value_or(0);
     print(common,
           {{"schema", "gonio/measure/1"},
            {"name", options.name},
-           {"file", file->string()},
-           {"raw", rawFile->string()},
+           {"file", kept->sample.file.string()},
+           {"raw", kept->sample.raw.string()},
            {"effort", set.info.effort},
            {"measured_cells", cells},
            {"median_relative_uncertainty", achieved},
@@ -293,7 +304,7 @@ Result<void> measure(const CommonOptions& common, const MeasureOptions& options)
           options.name + ": " + std::to_string(cells) + " BRDF samples, median uncertainty " +
               fixed(100 * achieved, 2) + " % (k = 1), " + fixed(set.info.rigSeconds, 1) +
               " s on the rig, " + fixed(set.info.computeSeconds, 1) + " s computing; " +
-              file->string());
+              kept->sample.file.string());
     return {};
 }
 

@@ -118,7 +118,7 @@ TEST_F(BadInput, WrongCommandLinesAreUsageErrors) {
     expectRefused(gonio({"info", kRealFile, "--colour"}), kUsage, {"--colour"});
     expectRefused(gonio({"measure", "x", "--effort", "heroic"}), kUsage, {"heroic", "draft"});
     expectRefused(gonio({"measure", "../x"}), kUsage, {"../x"});
-    expectRefused(gonio({"info", "sample:../../etc/passwd"}), kUsage, {"sample name"});
+    expectRefused(gonio({"info", "sample:../../etc/passwd"}), kFile, {"no sample of this name"});
     expectRefused(gonio({"sim", "place", "white", "--systematic", "some"}), kUsage, {"some"});
 }
 
