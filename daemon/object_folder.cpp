@@ -78,8 +78,7 @@ bool isLeftOver(const fs::path& path) {
 
 Result<void> makeFolder(const fs::path& folder) {
     std::error_code error;
-    if (fs::is_directory(folder, error)) return {};
-    fs::create_directories(folder, error);
+    if (!fs::is_directory(folder, error)) fs::create_directories(folder, error);
     if (error) {
         errno = error.value();
         return failed("cannot make", folder);
@@ -103,7 +102,10 @@ Result<std::string> ObjectFolder::put(std::string_view bytes, std::string_view e
     const fs::path path = pathOf(name);
     if (Result<void> made = makeFolder(path.parent_path()); !made) return made.error();
     std::error_code ignored;
-    if (fs::exists(path, ignored)) return name;
+    if (fs::exists(path, ignored)) {  // of a run that may have died before it synced the folder
+        if (Result<void> synced = syncFolder(path.parent_path()); !synced) return synced.error();
+        return name;
+    }
     const fs::path half = halfOf(path);
     if (Result<void> written = writeSynced(half, bytes); !written) {
         fs::remove(half, ignored);

@@ -63,7 +63,7 @@ std::string encodeLens(const LensRecord& lens) {
          std::vector<double>(covariance.data(), covariance.data() + covariance.size())},
         {"rms_px", lens.fit.rmsPixels},
         {"worst_px", lens.fit.worstPixels}};
-    return json.dump(2) + "\n";
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 Result<LensRecord> decodeLens(std::string_view text, const std::string& name) {
@@ -114,7 +114,13 @@ Result<ReferenceRecord> decodeReference(std::string_view bytes, const std::strin
     ReferenceRecord record{.info = set->info, .signals = {}};
     for (const proc::LedTable& led : set->leds) {
         auto& bands = record.signals.emplace_back();
-        for (Band band : kBands) bands[index(band)] = toSignal(led.bands[index(band)]);
+        for (Band band : kBands) {
+            const proc::CellSamples& cells = led.bands[index(band)];
+            if (cells.size() == 0) {
+                return Error{ErrorKind::File, name + ": a band is missing; calibrate again"};
+            }
+            bands[index(band)] = toSignal(cells);
+        }
     }
     return record;
 }

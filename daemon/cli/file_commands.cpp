@@ -59,6 +59,12 @@ Result<void> convertToZemax(const CommonOptions& common,
                             const Material& from,
                             const fs::path& output,
                             Json& files) {
+    if (from.table != nullptr) {  // as it is: nothing to resample
+        const proc::Written written = proc::writeZemax(*from.table);
+        if (Result<void> done = proc::writeFile(output, written.bytes); !done) return done;
+        reportLoss(common, output, written.loss, files);
+        return {};
+    }
     std::vector<double> incidences;
     for (Radians i : from.incidences()) incidences.push_back(proc::fileDegrees(i));
     const auto grid = proc::SpecularGrid::oneDegree(incidences, proc::TableSymmetry::Asymmetrical);
@@ -145,7 +151,9 @@ Result<void> convert(const CommonOptions& common, const ConvertOptions& options)
     }
     if (!done) return done;
     if (common.json)
-        std::cout << Json{{"schema", "gonio/convert/1"}, {"files", files}}.dump(2) << "\n";
+        std::cout << Json{{"schema", "gonio/convert/1"}, {"files", files}}.dump(
+                         2, ' ', false, Json::error_handler_t::replace)
+                  << "\n";
     return {};
 }
 
@@ -165,9 +173,9 @@ Result<void> plot(const CommonOptions& common, const PlotOptions& options) {
     if (auto done = proc::writeFile(slice, proc::slicePlots(*material->scatterer, request)); !done)
         return done;
     if (common.json) {
-        std::cout
-            << Json{{"schema", "gonio/plot/1"}, {"files", {map.string(), slice.string()}}}.dump(2)
-            << "\n";
+        std::cout << Json{{"schema", "gonio/plot/1"}, {"files", {map.string(), slice.string()}}}
+                         .dump(2, ' ', false, Json::error_handler_t::replace)
+                  << "\n";
     } else if (!common.quiet) {
         std::cout << map.string() << "\n" << slice.string() << "\n";
     }

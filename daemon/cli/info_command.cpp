@@ -31,6 +31,16 @@ Json sampleJson(const proc::SampleSet& sample) {
     json["notes"] = info.operatorNotes;
     json["software"] = info.softwareVersion;
     json["reference"] = info.referenceCertificate;
+    json["profile_hash"] = info.profileHash;
+    json["session"] = info.session;
+    json["qc"] = info.qcVerdicts;
+    json["interruptions"] = info.interruptions;
+    json["requested_uncertainty"] =
+        info.requestedUncertainty ? Json(*info.requestedUncertainty) : Json();
+    json["achieved_uncertainty"] =
+        info.achievedUncertainty ? Json(*info.achievedUncertainty) : Json();
+    json["wavelengths_nm"] = kBandNanometres;
+    json["extra"] = info.extra;
     json["rig_seconds"] = info.rigSeconds;
     json["compute_seconds"] = info.computeSeconds;
     if (!info.truthSpec.empty()) json["truth"] = info.truthSpec;
@@ -84,7 +94,10 @@ void printPlain(const Json& json, const std::string& indent) {
             printPlain(value, indent + "  ");
         } else {
             std::cout << indent << key << ": "
-                      << (value.is_string() ? value.get<std::string>() : value.dump()) << "\n";
+                      << (value.is_string()
+                              ? value.get<std::string>()
+                              : value.dump(-1, ' ', false, Json::error_handler_t::replace))
+                      << "\n";
         }
     }
 }
@@ -144,7 +157,7 @@ Result<void> info(const CommonOptions& common, const std::string& file) {
     if (common.json) {
         Json json = {{"schema", "gonio/info/1"}, {"file", file}};
         json.update(*facts);
-        std::cout << json.dump(2) << "\n";
+        std::cout << json.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
     } else {
         std::cout << "file: " << file << "\n";
         printPlain(*facts, "");

@@ -12,6 +12,7 @@
 #include "daemon/cli/progress.h"
 #include "daemon/measurement.h"
 #include "daemon/sim_bench.h"
+#include "daemon/store_lock.h"
 #include "proc/core/log.h"
 #include "proc/core/number_text.h"
 #include "proc/formats/file_bytes.h"
@@ -44,24 +45,37 @@ std::string utcNow() {
     return {text, std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc)};
 }
 
-/// An opened simulated rig with what the store knows of it. Keeps the store's next plan step up to
-/// date, whatever happens.
+/// No session takes more captures; a session that is killed leaves this gap.
+constexpr std::uint64_t kReservedSteps = 1 << 16;
+
+/// An opened simulated rig with what the store knows of it, for this process alone. Its plan steps
+/// are reserved at the beginning, so that no later session takes one of them again however this one
+/// ends.
 class RigSession {
 public:
     static Result<std::unique_ptr<RigSession>> open(const CommonOptions& common,
                                                     const fs::path& profile) {
         Result<Store> store = Store::open(common.store);
         if (!store) return store.error();
+        Result<StoreLock> lock = StoreLock::take(store->root());
+        if (!lock) return lock.error();
         const Result<SimState> state = readSimState(*store);
         if (!state) return state.error();
+        SimState reserved = *state;
+        reserved.nextPlanStep += kReservedSteps;
+        if (Result<void> kept = writeSimState(*store, reserved); !kept) return kept.error();
         Result<RigProfile> known = readProfile(profile.empty() ? defaultProfile() : profile);
         if (!known) return known.error();
         Result<std::unique_ptr<sim::InProcessDoor>> door = openSim(*state, *store);
         if (!door) return door.error();
         auto rig = driver::Rig::open(**door, state->nextPlanStep);
         if (!rig) return rig.error();
-        return std::unique_ptr<RigSession>(new RigSession(
-            std::move(*store), *state, std::move(*known), std::move(*door), std::move(*rig)));
+        return std::unique_ptr<RigSession>(new RigSession(std::move(*store),
+                                                          std::move(*lock),
+                                                          *state,
+                                                          std::move(*known),
+                                                          std::move(*door),
+                                                          std::move(*rig)));
     }
     ~RigSession() { (void)writeSimState(store, state); }
     RigSession(const RigSession&) = delete;
@@ -89,6 +103,7 @@ public:
     }
 
     Store store;
+    StoreLock lock;
     SimState state;
     RigProfile profile;
     SystemClock computer;
@@ -96,9 +111,14 @@ public:
     driver::Rig rig;
 
 private:
-    RigSession(
-        Store s, SimState st, RigProfile p, std::unique_ptr<sim::InProcessDoor> d, driver::Rig r)
+    RigSession(Store s,
+               StoreLock l,
+               SimState st,
+               RigProfile p,
+               std::unique_ptr<sim::InProcessDoor> d,
+               driver::Rig r)
         : store(std::move(s)),
+          lock(std::move(l)),
           state(std::move(st)),
           profile(std::move(p)),
           door(std::move(d)),
@@ -127,10 +147,26 @@ void finish(proc::SampleInfo& info, const RigSession& session, const Captured& c
 
 void print(const CommonOptions& common, const Json& json, const std::string& line) {
     if (common.json) {
-        std::cout << json.dump(2) << "\n";
+        std::cout << json.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
     } else if (!common.quiet) {
         std::cout << line << "\n";
     }
+}
+
+Error notPlaced(const RigSession& session, const std::string& reference) {
+    return {ErrorKind::Quality,
+            "under the rig lies '" + session.state.placed + "'; place the " + reference +
+                " first: gonio sim place " + reference};
+}
+
+/// A reference is of this rig's LEDs, or its cells would be taken for others'.
+Result<void> checkLeds(const ReferenceRecord& reference, const RigSession& session) {
+    const std::size_t leds = session.rig.identify().ledAngles.size();
+    if (reference.signals.size() == leds) return {};
+    return Error{ErrorKind::Quality,
+                 "the " + reference.info.name + " reference of " + session.state.serial + " has " +
+                     std::to_string(reference.signals.size()) + " LEDs, the rig " +
+                     std::to_string(leds) + "; run: gonio calibrate " + reference.info.name};
 }
 
 Result<void> calibrateMirror(const CommonOptions& common, RigSession& session) {
@@ -138,9 +174,7 @@ Result<void> calibrateMirror(const CommonOptions& common, RigSession& session) {
         session.rig, session.profile, session.state.nextPlanStep, session.computer, {}};
     Progress progress("mirror", mirrorSteps(probe), session.computer, !common.quiet);
     if (session.state.placed != "mirror") {
-        return Error{ErrorKind::Quality,
-                     "under the rig lies '" + session.state.placed +
-                         "'; place the mirror first: gonio sim place mirror"};
+        return notPlaced(session, "mirror");
     }
     // The simulated rig's operator changes the wedge between the placements.
     const PlaceMirror place = [&](const proc::Wedge& wedge) -> Result<void> {
@@ -171,6 +205,7 @@ Result<void> calibrateMirror(const CommonOptions& common, RigSession& session) {
 
 Result<void> calibrateTile(const CommonOptions& common, RigSession& session, bool white) {
     const std::string name = white ? "white" : "black";
+    if (session.state.placed != name) return notPlaced(session, name);
     const Result<LensRecord> lens = loadLens(session.store, session.state.serial);
     if (!lens) return lens.error();
     const Bench probe{
@@ -185,6 +220,7 @@ Result<void> calibrateTile(const CommonOptions& common, RigSession& session, boo
         const Result<ReferenceRecord> black =
             loadReference(session.store, session.state.serial, "black");
         if (!black) return black.error();
+        if (Result<void> fits = checkLeds(*black, session); !fits) return fits;
         if (Result<void> bright = checkWhite(captured->signals, black->signals); !bright)
             return bright;
     }
@@ -250,6 +286,9 @@ Result<void> measure(const CommonOptions& common, const MeasureOptions& options)
     const Result<ReferenceRecord> white =
         loadReference(session.store, session.state.serial, "white");
     if (!white) return white.error();
+    for (const ReferenceRecord* reference : {&*black, &*white}) {
+        if (Result<void> fits = checkLeds(*reference, session); !fits) return fits;
+    }
     const Result<References> certified = loadReferences(session.profile);
     if (!certified) return certified.error();
 

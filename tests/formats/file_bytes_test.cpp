@@ -112,5 +112,20 @@ TEST(FileBytes, LeavesNoHalfFileWhereAFolderStands) {
     EXPECT_EQ(entriesIn(folder), 1U);
 }
 
+TEST(FileBytes, KeepsALinkAndReplacesWhatIsBehindIt) {
+    const TempFolder folder;
+    ASSERT_TRUE(writeFile(folder / "real", "old"));
+    fs::create_symlink(folder / "real", folder / "link");
+    ASSERT_TRUE(writeFile(folder / "link", "new"));
+    EXPECT_TRUE(fs::is_symlink(folder / "link"));
+    EXPECT_EQ(*readFile(folder / "real"), "new");
+    EXPECT_EQ(entriesIn(folder), 2U);
+}
+
+TEST(FileBytes, WritesIntoADeviceInsteadOfReplacingIt) {
+    ASSERT_TRUE(writeFile("/dev/null", "x"));
+    EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
 }  // namespace
 }  // namespace gonio::proc
