@@ -2,11 +2,11 @@
 // whole. A first test by chance; named failpoints prove it later.
 
 #include <gtest/gtest.h>
-#include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
+#include <csignal>
 #include <fstream>
 #include <iterator>
 #include <random>
