@@ -34,11 +34,11 @@ Result<Material> openMaterial(const std::string& f, const std::filesystem::path&
     }
     std::filesystem::path file = f;
     if (f.starts_with(kSample)) {
-        const Result<Store> opened = Store::open(store);
+        Result<Store> opened = Store::open(store);
         if (!opened) return opened.error();
-        const auto path = opened->sample(std::string_view(f).substr(kSample.size()), ".gonio");
-        if (!path) return path.error();
-        file = *path;
+        const auto record = opened->sample(f.substr(kSample.size()));
+        if (!record) return record.error();
+        file = record->file;
     }
     Result<std::unique_ptr<const Scatterer>> brdf = proc::openBrdf(file);
     if (!brdf) return brdf.error();

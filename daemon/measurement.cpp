@@ -109,6 +109,7 @@ Result<LensRecord> measureLens(const Bench& bench, const PlaceMirror& place) {
     const std::vector<Radians> leds = bench.rig.identify().ledAngles;
     std::vector<proc::MirrorSpot> spots;
     for (const proc::Wedge& wedge : proc::mirrorWedges()) {
+        if (Result<void> dark = bench.rig.darken(); !dark) return dark.error();
         if (Result<void> placed = place(wedge); !placed) return placed.error();
         for (int led = 0; led < static_cast<int>(leds.size()); ++led) {
             const Direction seen =
@@ -221,7 +222,7 @@ proc::SampleSet calibrateSample(const PlacementSignals& signals,
         }
         set.leds.push_back(std::move(table));
     }
-    info.budgetJson = budgets.dump();
+    info.budgetJson = budgets.dump(-1, ' ', false, Json::error_handler_t::replace);
     if (!relative.empty()) info.achievedUncertainty = median(std::move(relative));
     set.info = std::move(info);
     return set;

@@ -15,8 +15,8 @@ struct RigProfile {
     std::string name;
     std::string hash;  ///< of the file's bytes: eight hexadecimal digits
     proc::SensorNoise noise;
-    std::vector<Microseconds> exposures;  ///< ascending
-    std::vector<double> dimLevels;        ///< fractions of full level, descending
+    std::vector<Microseconds> exposures;   ///< ascending
+    std::vector<double> dimLevels;         ///< fractions of full level, descending
     std::filesystem::path whiteReference;  ///< empty ("1/pi" in the file): without a table
     double blackReflectance = 0;
     double blackRelativeUncertainty = 0;

@@ -10,22 +10,19 @@ namespace gonio::daemon {
 namespace {
 
 using Json = nlohmann::ordered_json;
-namespace fs = std::filesystem;
 
 constexpr const char* kLensSchema = "gonio/lens/1";
 
-Error notCalibrated(const fs::path& folder, const std::string& what) {
-    return {ErrorKind::Quality,
-            "rig " + folder.filename().string() + " has no " + what + " calibration; place the " +
-                what + " and run: gonio calibrate " + what};
-}
-
-Result<void> makeFolder(const fs::path& folder) {
-    std::error_code failed;
-    fs::create_directories(folder, failed);
-    if (!failed) return {};
-    return Error{ErrorKind::Busy,
-                 "store: cannot make " + folder.string() + ": " + failed.message()};
+/// The bytes of the rig's newest calibration of a kind.
+Result<std::string> newest(Store& store, const std::string& rig, const std::string& kind) {
+    const auto record = store.newestCalibration(rig, kind);
+    if (!record) return record.error();
+    if (!*record) {
+        return Error{ErrorKind::Quality,
+                     "rig " + rig + " has no " + kind + " calibration; place the " + kind +
+                         " and run: gonio calibrate " + kind};
+    }
+    return proc::readFile((*record)->file);
 }
 
 proc::CellSamples toSamples(const proc::CellSignal& signal) {
@@ -53,8 +50,7 @@ proc::CellSignal toSignal(const proc::CellSamples& samples) {
 
 }  // namespace
 
-Result<void> writeLens(const fs::path& folder, const LensRecord& lens) {
-    if (Result<void> made = makeFolder(folder); !made) return made;
+std::string encodeLens(const LensRecord& lens) {
     const auto values = lens.fit.map.values();
     const Eigen::MatrixXd& covariance = lens.fit.covariance;
     const Json json = {
@@ -67,16 +63,12 @@ Result<void> writeLens(const fs::path& folder, const LensRecord& lens) {
          std::vector<double>(covariance.data(), covariance.data() + covariance.size())},
         {"rms_px", lens.fit.rmsPixels},
         {"worst_px", lens.fit.worstPixels}};
-    return proc::writeFile(folder / "lens.json", json.dump(2) + "\n");
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-Result<LensRecord> readLens(const fs::path& folder) {
-    const fs::path file = folder / "lens.json";
-    if (!fs::exists(file)) return notCalibrated(folder, "mirror");
-    const Result<std::string> text = proc::readFile(file);
-    if (!text) return text.error();
+Result<LensRecord> decodeLens(std::string_view text, const std::string& name) {
     try {
-        const Json json = Json::parse(*text);
+        const Json json = Json::parse(text);
         constexpr std::size_t kN = proc::LensMap::kParameters;
         const auto values = json.at("values").get<std::vector<double>>();
         const auto covariance = json.at("covariance").get<std::vector<double>>();
@@ -93,39 +85,52 @@ Result<LensRecord> readLens(const fs::path& folder) {
             .spots = json.at("spots").get<int>(),
             .dateUtc = json.at("date").get<std::string>()};
     } catch (const std::exception& error) {
-        return Error{ErrorKind::File,
-                     file.string() + ": " + error.what() + "; run: gonio calibrate mirror"};
+        return Error{ErrorKind::File, name + ": " + error.what() + "; run: gonio calibrate mirror"};
     }
 }
 
-Result<void> writeSignals(const fs::path& folder,
-                          const std::string& name,
-                          const proc::SampleInfo& info,
-                          const std::vector<Radians>& ledAngles,
-                          const PlacementSignals& signals) {
-    if (Result<void> made = makeFolder(folder); !made) return made;
-    proc::SampleSet set{.info = info, .leds = {}};
-    for (std::size_t led = 0; led < signals.size(); ++led) {
+Result<LensRecord> loadLens(Store& store, const std::string& rig) {
+    const Result<std::string> text = newest(store, rig, "mirror");
+    if (!text) return text.error();
+    return decodeLens(*text, "lens map of " + rig);
+}
+
+Result<std::string> encodeReference(const ReferenceRecord& reference,
+                                    const std::vector<Radians>& ledAngles) {
+    proc::SampleSet set{.info = reference.info, .leds = {}};
+    for (std::size_t led = 0; led < reference.signals.size(); ++led) {
         proc::LedTable table{.incidence = ledAngles[led], .bands = {}};
         for (Band band : kBands) {
-            table.bands[index(band)] = toSamples(signals[led][index(band)]);
+            table.bands[index(band)] = toSamples(reference.signals[led][index(band)]);
         }
         set.leds.push_back(std::move(table));
     }
-    return proc::writeGonio(folder / (name + ".gonio"), set);
+    return proc::encodeGonio(set);
 }
 
-Result<ReferenceRecord> readSignals(const fs::path& folder, const std::string& name) {
-    const fs::path file = folder / (name + ".gonio");
-    if (!fs::exists(file)) return notCalibrated(folder, name);
-    const Result<proc::SampleSet> set = proc::readGonio(file);
+Result<ReferenceRecord> decodeReference(std::string_view bytes, const std::string& name) {
+    const Result<proc::SampleSet> set = proc::decodeGonio(bytes, name);
     if (!set) return set.error();
     ReferenceRecord record{.info = set->info, .signals = {}};
     for (const proc::LedTable& led : set->leds) {
         auto& bands = record.signals.emplace_back();
-        for (Band band : kBands) bands[index(band)] = toSignal(led.bands[index(band)]);
+        for (Band band : kBands) {
+            const proc::CellSamples& cells = led.bands[index(band)];
+            if (cells.size() == 0) {
+                return Error{ErrorKind::File, name + ": a band is missing; calibrate again"};
+            }
+            bands[index(band)] = toSignal(cells);
+        }
     }
     return record;
+}
+
+Result<ReferenceRecord> loadReference(Store& store,
+                                      const std::string& rig,
+                                      const std::string& kind) {
+    const Result<std::string> bytes = newest(store, rig, kind);
+    if (!bytes) return bytes.error();
+    return decodeReference(*bytes, kind + " reference of " + rig);
 }
 
 }  // namespace gonio::daemon

@@ -1,14 +1,14 @@
 #pragma once
-// What a store knows of one rig (rigs/SERIAL/): its lens map (lens.json) and the binned signals of
-// the two references (black.gonio, white.gonio: f holds the signal in electrons per second and
-// steradian, u_random its standard deviation). Their raw captures lie beside them, so that they can
-// be binned again.
+// What a store knows of one rig: its lens map (JSON) and the binned signals of the two references
+// (a .gonio whose f holds the signal in electrons per second and steradian, u_random its standard
+// deviation). Their raw captures lie beside them, so that they can be binned again.
 
 #include <array>
-#include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "daemon/store.h"
 #include "proc/core/result.h"
 #include "proc/optics/binning.h"
 #include "proc/optics/lens_fit.h"
@@ -25,26 +25,29 @@ struct LensRecord {
     std::string dateUtc;
 };
 
-Result<void> writeLens(const std::filesystem::path& folder, const LensRecord& lens);
-/// Quality error that names the command to run when there is none.
-[[nodiscard]] Result<LensRecord> readLens(const std::filesystem::path& folder);
+[[nodiscard]] std::string encodeLens(const LensRecord& lens);
+/// `name` stands in errors.
+[[nodiscard]] Result<LensRecord> decodeLens(std::string_view text, const std::string& name);
+/// The rig's newest. Quality error that names the command to run when there is none.
+[[nodiscard]] Result<LensRecord> loadLens(Store& store, const std::string& rig);
 
 /// Signals of one placement: per LED, by ascending number, one per band.
 using PlacementSignals = std::vector<std::array<proc::CellSignal, 3>>;
-
-/// `name` is "black" or "white".
-Result<void> writeSignals(const std::filesystem::path& folder,
-                          const std::string& name,
-                          const proc::SampleInfo& info,
-                          const std::vector<Radians>& ledAngles,
-                          const PlacementSignals& signals);
 
 struct ReferenceRecord {
     proc::SampleInfo info;
     PlacementSignals signals;
 };
-/// Quality error that names the command to run when there is none.
-[[nodiscard]] Result<ReferenceRecord> readSignals(const std::filesystem::path& folder,
-                                                  const std::string& name);
+
+[[nodiscard]] Result<std::string> encodeReference(const ReferenceRecord& reference,
+                                                  const std::vector<Radians>& ledAngles);
+/// `name` stands in errors.
+[[nodiscard]] Result<ReferenceRecord> decodeReference(std::string_view bytes,
+                                                      const std::string& name);
+/// The rig's newest; `kind` is "black" or "white". Quality error that names the command to run when
+/// there is none.
+[[nodiscard]] Result<ReferenceRecord> loadReference(Store& store,
+                                                    const std::string& rig,
+                                                    const std::string& kind);
 
 }  // namespace gonio::daemon

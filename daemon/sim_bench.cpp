@@ -47,7 +47,8 @@ Result<void> writeSimState(const Store& store, const SimState& state) {
                        {"tilt_x_deg", state.wedge.aboutX.degrees()},
                        {"tilt_y_deg", state.wedge.aboutY.degrees()},
                        {"next_plan_step", state.nextPlanStep}};
-    return proc::writeFile(store.simState(), json.dump(2) + "\n");
+    return proc::writeFile(store.simState(),
+                           json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 Result<sim::Placement> makePlacement(const SimState& state, const Store& store) {

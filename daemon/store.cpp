@@ -8,6 +8,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
+const std::vector<std::string> kMigrations{R"(
+    CREATE TABLE samples(
+        name TEXT PRIMARY KEY, rig TEXT NOT NULL, date TEXT NOT NULL,
+        file TEXT NOT NULL, raw TEXT);
+    CREATE TABLE calibrations(
+        id INTEGER PRIMARY KEY, rig TEXT NOT NULL, kind TEXT NOT NULL, date TEXT NOT NULL,
+        file TEXT NOT NULL, raw TEXT);
+    CREATE INDEX newest_calibration ON calibrations(rig, kind, id);
+)"};
+
+constexpr std::string_view kRawExtension = ".graw";
+
 fs::path defaultRoot() {
     const auto variable = [](const char* name) -> std::string {
         const char* value = std::getenv(name);
@@ -23,50 +35,142 @@ fs::path defaultRoot() {
     return ".gonio";
 }
 
-bool isSampleName(std::string_view name) {
+}  // namespace
+
+Result<void> checkSampleName(std::string_view name) {
+    constexpr std::size_t kLongest = 64;
     const auto alphanumeric = [](char c) {
         return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
     };
-    return !name.empty() && name.size() <= 64 && alphanumeric(name.front()) &&
-           std::all_of(name.begin(), name.end(), [&](char c) {
-               return alphanumeric(c) || c == '.' || c == '_' || c == '-';
-           });
+    const bool good = !name.empty() && name.size() <= kLongest && alphanumeric(name.front()) &&
+                      std::all_of(name.begin(), name.end(), [&](char c) {
+                          return alphanumeric(c) || c == '.' || c == '_' || c == '-';
+                      });
+    if (good) return {};
+    return Error{ErrorKind::Usage,
+                 "sample name '" + std::string(name) +
+                     "': wanted 1 to 64 letters, digits, '.', '_' or '-', a letter or digit first"};
 }
-
-}  // namespace
 
 Result<Store> Store::open(const fs::path& chosen) {
     const fs::path root = chosen.empty() ? defaultRoot() : chosen;
     std::error_code failed;
-    fs::create_directories(root / "samples", failed);
+    fs::create_directories(root, failed);
     if (failed) {
         return Error{ErrorKind::Busy,
                      "store: cannot make " + root.string() + ": " + failed.message() +
                          "; choose another place with --store DIR"};
     }
-    return Store(root);
+    Result<ObjectFolder> objects = ObjectFolder::open(root / "objects");
+    if (!objects) return objects.error();
+    Result<Database> database = Database::open(root / "gonio.db", kMigrations);
+    if (!database) return database.error();
+    return Store(root, std::move(*objects), std::move(*database));
 }
 
-fs::path Store::rig(const std::string& serial) const { return root_ / "rigs" / serial; }
+fs::path Store::pathOf(const SqlValue& object) const {
+    const std::string name = textOf(object);
+    return name.empty() ? fs::path() : objects_.pathOf(name);
+}
 
-Result<fs::path> Store::sample(std::string_view name, std::string_view extension) const {
-    if (!isSampleName(name)) {
+Result<Store::Objects> Store::keep(const Contents& contents, std::string_view extension) const {
+    Objects objects;
+    if (!contents.raw.empty()) {  // first: it is what cannot be had again
+        const Result<std::string> raw = objects_.put(contents.raw, kRawExtension);
+        if (!raw) return raw.error();
+        objects.raw = *raw;
+    }
+    const Result<std::string> file = objects_.put(contents.file, extension);
+    if (!file) return file.error();
+    objects.file = *file;
+    return objects;
+}
+
+Result<std::string> Store::freeName(const std::string& name) {
+    for (int number = 1;; ++number) {
+        const std::string candidate = name + "." + std::to_string(number);
+        const auto rows = database_.run("SELECT 1 FROM samples WHERE name = ?", {candidate});
+        if (!rows) return rows.error();
+        if (rows->empty()) return candidate;
+    }
+}
+
+Result<Store::Added> Store::addSample(SampleRecord record, const Contents& contents) {
+    if (Result<void> good = checkSampleName(record.name); !good) return good.error();
+    const Result<Objects> objects = keep(contents, ".gonio");
+    if (!objects) return objects.error();
+    std::string movedTo;
+    const Result<void> done = database_.transaction([&]() -> Result<void> {
+        const auto earlier = database_.run("SELECT 1 FROM samples WHERE name = ?", {record.name});
+        if (!earlier) return earlier.error();
+        if (!earlier->empty()) {
+            const Result<std::string> other = freeName(record.name);
+            if (!other) return other.error();
+            const auto moved =
+                database_.run("UPDATE samples SET name = ? WHERE name = ?", {*other, record.name});
+            if (!moved) return moved.error();
+            movedTo = *other;
+        }
+        const auto inserted =
+            database_.run("INSERT INTO samples(name, rig, date, file, raw) VALUES(?, ?, ?, ?, ?)",
+                          {record.name, record.rig, record.dateUtc, objects->file, objects->raw});
+        return inserted ? Result<void>() : inserted.error();
+    });
+    if (!done) return done.error();
+    record.file = pathOf(objects->file);
+    record.raw = pathOf(objects->raw);
+    return Added{std::move(record), movedTo};
+}
+
+Result<SampleRecord> Store::sample(const std::string& name) {
+    const auto rows =
+        database_.run("SELECT rig, date, file, raw FROM samples WHERE name = ?", {name});
+    if (!rows) return rows.error();
+    if (rows->empty()) {
         return Error{
-            ErrorKind::Usage,
-            "sample name '" + std::string(name) +
-                "': wanted 1 to 64 letters, digits, '.', '_' or '-', a letter or digit first"};
+            ErrorKind::File,
+            "sample:" + name + ": the store " + root_.string() + " has no sample of this name"};
     }
-    return root_ / "samples" / (std::string(name) + std::string(extension));
+    const SqlRow& row = rows->front();
+    return SampleRecord{name, textOf(row[0]), textOf(row[1]), pathOf(row[2]), pathOf(row[3])};
 }
 
-std::vector<std::string> Store::sampleNames() const {
-    std::vector<std::string> names;
-    std::error_code ignored;
-    for (const auto& entry : fs::directory_iterator(root_ / "samples", ignored)) {
-        if (entry.path().extension() == ".gonio") names.push_back(entry.path().stem().string());
+Result<std::vector<SampleRecord>> Store::samples() {
+    const auto rows = database_.run("SELECT name, rig, date, file, raw FROM samples ORDER BY name");
+    if (!rows) return rows.error();
+    std::vector<SampleRecord> all;
+    for (const SqlRow& row : *rows) {
+        all.push_back(
+            {textOf(row[0]), textOf(row[1]), textOf(row[2]), pathOf(row[3]), pathOf(row[4])});
     }
-    std::sort(names.begin(), names.end());
-    return names;
+    return all;
+}
+
+Result<CalibrationRecord> Store::addCalibration(CalibrationRecord record,
+                                                const Contents& contents) {
+    const bool json = record.kind == "mirror";
+    const Result<Objects> objects = keep(contents, json ? ".json" : ".gonio");
+    if (!objects) return objects.error();
+    const auto inserted =
+        database_.run("INSERT INTO calibrations(rig, kind, date, file, raw) VALUES(?, ?, ?, ?, ?)",
+                      {record.rig, record.kind, record.dateUtc, objects->file, objects->raw});
+    if (!inserted) return inserted.error();
+    record.file = pathOf(objects->file);
+    record.raw = pathOf(objects->raw);
+    return record;
+}
+
+Result<std::optional<CalibrationRecord>> Store::newestCalibration(const std::string& rig,
+                                                                  const std::string& kind) {
+    const auto rows = database_.run(
+        "SELECT date, file, raw FROM calibrations WHERE rig = ? AND kind = ? ORDER BY id DESC "
+        "LIMIT 1",
+        {rig, kind});
+    if (!rows) return rows.error();
+    if (rows->empty()) return std::optional<CalibrationRecord>();
+    const SqlRow& row = rows->front();
+    return std::optional(
+        CalibrationRecord{rig, kind, textOf(row[0]), pathOf(row[1]), pathOf(row[2])});
 }
 
 }  // namespace gonio::daemon

@@ -1,19 +1,46 @@
 #pragma once
-// Where calibrations and samples are kept: one directory of plain files.
+// Where calibrations and samples are kept, of all rigs.
 //
-//   sim.json             the simulated rig: serial, seed, what lies under it, next plan step
-//   rigs/SERIAL/         lens.json, dark.graw, black.gonio, white.gonio and their raw captures
-//   samples/NAME.gonio   and NAME.graw
+//   gonio.db      what there is (SQLite): samples by name, calibrations by rig, kind and time
+//   objects/      the files themselves, named by their content
+//   sim.json      the simulated rig: serial, seed, what lies under it, next plan step
+//
+// Files first, then their row, then the answer: what was acknowledged survives kill -9 and power
+// loss, what was not is absent or whole. Nothing is ever overwritten.
 
-#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "daemon/database.h"
+#include "daemon/object_folder.h"
 #include "proc/core/result.h"
 
 namespace gonio::daemon {
+
+struct SampleRecord {
+    std::string name;
+    std::string rig;      ///< serial
+    std::string dateUtc;  ///< ISO 8601
+    std::filesystem::path file;
+    std::filesystem::path raw;
+};
+
+struct CalibrationRecord {
+    std::string rig;   ///< serial
+    std::string kind;  ///< "mirror", "black" or "white"
+    std::string dateUtc;
+    std::filesystem::path file;
+    std::filesystem::path raw;  ///< empty: there is none
+};
+
+/// Encoded files that belong together.
+struct Contents {
+    std::string file;
+    std::string raw;  ///< empty: there is none
+};
 
 class Store {
 public:
@@ -23,16 +50,42 @@ public:
 
     [[nodiscard]] const std::filesystem::path& root() const { return root_; }
     [[nodiscard]] std::filesystem::path simState() const { return root_ / "sim.json"; }
-    [[nodiscard]] std::filesystem::path rig(const std::string& serial) const;
-    /// Usage error unless NAME is 1..64 of letters, digits, '.', '_', '-' and starts with none of
-    /// the last three.
-    [[nodiscard]] Result<std::filesystem::path> sample(std::string_view name,
-                                                       std::string_view extension) const;
-    [[nodiscard]] std::vector<std::string> sampleNames() const;
+
+    /// Keeps a sample of the record's name, rig and date. An earlier one of that name is kept as
+    /// NAME.1, or with the first number that is free: `movedTo`, else empty.
+    struct Added {
+        SampleRecord sample;
+        std::string movedTo;
+    };
+    [[nodiscard]] Result<Added> addSample(SampleRecord record, const Contents& contents);
+    /// File error when there is none.
+    [[nodiscard]] Result<SampleRecord> sample(const std::string& name);
+    /// By name.
+    [[nodiscard]] Result<std::vector<SampleRecord>> samples();
+
+    [[nodiscard]] Result<CalibrationRecord> addCalibration(CalibrationRecord record,
+                                                           const Contents& contents);
+    [[nodiscard]] Result<std::optional<CalibrationRecord>> newestCalibration(
+        const std::string& rig, const std::string& kind);
 
 private:
-    explicit Store(std::filesystem::path root) : root_(std::move(root)) {}
+    Store(std::filesystem::path root, ObjectFolder objects, Database database)
+        : root_(std::move(root)), objects_(std::move(objects)), database_(std::move(database)) {}
+    [[nodiscard]] std::filesystem::path pathOf(const SqlValue& object) const;
+    [[nodiscard]] Result<std::string> freeName(const std::string& name);
+    struct Objects {
+        std::string file;
+        SqlValue raw;
+    };
+    [[nodiscard]] Result<Objects> keep(const Contents& contents, std::string_view extension) const;
+
     std::filesystem::path root_;
+    ObjectFolder objects_;
+    Database database_;
 };
+
+/// Usage error unless NAME is 1..64 of letters, digits, '.', '_', '-' and starts with a letter or a
+/// digit.
+[[nodiscard]] Result<void> checkSampleName(std::string_view name);
 
 }  // namespace gonio::daemon

@@ -24,7 +24,6 @@ constexpr Nanoseconds kStatusPeriod = std::chrono::milliseconds(100);
 constexpr std::size_t kStoredAcks = 8;
 constexpr std::size_t kStoredEvents = 64;
 constexpr std::size_t kInputQueue = 63;  // as hidraw keeps them
-constexpr std::array<std::int16_t, 4> kTemperatures{2600, 2500, 2500, 2300};
 
 std::uint64_t microseconds(Nanoseconds t) { return static_cast<std::uint64_t>(t.count() / 1000); }
 
@@ -42,7 +41,7 @@ Device::Device(DeviceConfig config)
     : config_(std::move(config)),
       // The window that the host reads is centred on the sensor; so is the lens, up to its offset.
       optics_(config_.serial, {kSensorSize.width / 2.0, kSensorSize.height / 2.0}),
-      sensor_(config_.serial),
+      sensor_(config_.serial, config_.sensorCelsius),
       bootId_(static_cast<std::uint32_t>(mixed(config_.seed, config_.bootCount))) {
     raise(event::kBoot, bootId_, 0);
 }
@@ -137,7 +136,7 @@ Status Device::status() const {
         }
         v.ledCurrent = currents(current_.levels);
     }
-    v.temperature = kTemperatures;
+    v.temperature = temperatures();
     v.lastCommand = session_.lastCommand;
     v.captureId = capture_ ? capture_->id : 0;
     v.framesMade = stats_.framesMade;
@@ -478,7 +477,14 @@ void Device::goDark() {
     }
 }
 
+std::array<std::int16_t, 4> Device::temperatures() const {
+    return {2600, static_cast<std::int16_t>(std::lround(100 * config_.sensorCelsius)), 2500, 2300};
+}
+
 void Device::abort(std::uint16_t reason) {
+    // What was acknowledged and waits for its frame holds from now on, the LEDs excepted.
+    if (!due_.empty()) current_ = due_.back().second;
+    due_.clear();
     goDark();
     if (exposing_ && capture_) {
         ChunkHeader header{.type = ChunkType::Aborted,
@@ -492,7 +498,6 @@ void Device::abort(std::uint16_t reason) {
     }
     exposing_.reset();
     capture_.reset();
-    due_.clear();
     pushStatus();
 }
 
@@ -631,7 +636,7 @@ void Device::queueFrame(const Exposing& done, int index) {
     leader.exposureGrantedNs = static_cast<std::uint64_t>(exposure.count());
     leader.gain = s.gain;
     if (s.led >= 0) leader.ledLevel = s.levels;
-    leader.temperature = kTemperatures;
+    leader.temperature = temperatures();
     leader.blackLevel = kBlackLevel;
     leader.x = static_cast<std::uint16_t>(format_.view.x);
     leader.y = static_cast<std::uint16_t>(format_.view.y);

@@ -27,6 +27,7 @@ struct DeviceConfig {
     std::uint64_t seed = 1;
     std::uint32_t bootCount = 1;
     ReferenceErrors errors;
+    double sensorCelsius = 25;  ///< dark current doubles each 7 K
 };
 
 class Device {
@@ -126,6 +127,8 @@ private:
     [[nodiscard]] const RateImages& rates(int led);
     [[nodiscard]] bool freeRunning() const { return capture_ && !capture_->software; }
     [[nodiscard]] driver::RigState state() const;
+    /// LED board, sensor, body, ambient: 0.01 degC.
+    [[nodiscard]] std::array<std::int16_t, 4> temperatures() const;
 
     DeviceConfig config_;
     Optics optics_;

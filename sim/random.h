@@ -19,9 +19,9 @@ namespace gonio::sim {
 /// Standard normal.
 [[nodiscard]] double gaussian(std::uint64_t key, std::uint64_t counter);
 
-/// Poisson with the given mean (>= 0) from one uniform u: by inversion up to a mean of 10,
-/// above by rounding the third-order Cornish-Fisher expansion, its variance less the 1/12 that the
-/// rounding adds [Sheppard]. Just above 10 no probability is wrong by more than 3e-4 and the
+/// Poisson with the given mean (>= 0) from one uniform u: by inversion up to a mean of 10, above by
+/// rounding the third-order Cornish-Fisher expansion, its variance less the 1/12 that the rounding
+/// adds (Sheppard's correction). Just above 10 no probability is wrong by more than 3e-4 and the
 /// variance by no more than 1e-4 of itself; both shrink as the mean grows. At mean = 0: 0.
 [[nodiscard]] double poisson(double mean, double u);
 

@@ -72,11 +72,10 @@ ReferenceErrors ReferenceErrors::random(std::uint64_t seed) {
     return errors;
 }
 
-ReferenceErrors ReferenceErrors::stratified(int run, std::uint64_t seed) {
+ReferenceErrors ReferenceErrors::stratified(int run) {
     ReferenceErrors errors;
     errors.kind_ = Kind::Stratified;
     errors.run_ = run;
-    errors.seed_ = seed;
     return errors;
 }
 
@@ -85,7 +84,7 @@ Result<ReferenceErrors> ReferenceErrors::parse(std::string_view text, std::uint6
     if (text == "random") return random(seed);
     if (text.starts_with("stratum:")) {
         const auto run = parseInteger(text.substr(8));
-        if (run && *run >= 0 && *run < kStrata) return stratified(static_cast<int>(*run), seed);
+        if (run && *run >= 0 && *run < kStrata) return stratified(static_cast<int>(*run));
     }
     return Error{ErrorKind::Usage,
                  "systematic errors '" + std::string(text) +

@@ -35,8 +35,8 @@ public:
     ReferenceErrors() = default;
     [[nodiscard]] static ReferenceErrors random(std::uint64_t seed);
     /// Run 0..19 of 20: over the runs each component takes each of its 20 quantiles (k + 0.5) / 20
-    /// once, in an order of its own.
-    [[nodiscard]] static ReferenceErrors stratified(int run, std::uint64_t seed);
+    /// once, in an order of its own. The orders are fixed: runs may differ in their noise's seed.
+    [[nodiscard]] static ReferenceErrors stratified(int run);
     /// "none", "random" or "stratum:K".
     [[nodiscard]] static Result<ReferenceErrors> parse(std::string_view text, std::uint64_t seed);
 

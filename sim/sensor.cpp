@@ -14,7 +14,6 @@ constexpr double kReadNoise = 2.4;       // e-
 constexpr double kElectronsPerDn = 2.6;  // e-/DN
 constexpr double kDarkAt25 = 3;          // e-/s
 constexpr double kDoublingKelvin = 7;
-constexpr double kSensorCelsius = 25;
 constexpr double kNonUniformity = 0.007;
 constexpr std::int64_t kOffsetNs = 14'260;  // between the line time and the effective exposure
 constexpr std::int64_t kLineNs = 10LL * kExposureStep;
@@ -33,7 +32,7 @@ Nanoseconds grantedExposure(std::uint32_t requestedUs) {
     return Nanoseconds(lines * kLineNs + kOffsetNs);
 }
 
-Sensor::Sensor(const std::string& serial) : key_(0x70726E75) {
+Sensor::Sensor(const std::string& serial, double celsius) : key_(0x70726E75), celsius_(celsius) {
     for (char c : serial) key_ = mixed(key_, static_cast<unsigned char>(c));
     response_ = Image<float>(kSensorSize);
     parallelFor(response_.pixels().size(), [&](IndexRange range) {
@@ -54,7 +53,7 @@ Image<std::uint16_t> Sensor::expose(const Image<float>* rate,
                                     const NoiseKey& key,
                                     int binning) const {
     const double seconds = static_cast<double>(exposure.count()) * 1e-9;
-    const double dark = kDarkAt25 * std::exp2((kSensorCelsius - 25) / kDoublingKelvin) * seconds;
+    const double dark = kDarkAt25 * std::exp2((celsius_ - 25) / kDoublingKelvin) * seconds;
     const std::uint64_t shotKey = mixed(mixed(mixed(key.seed, key.planStep), key.frameIndex), 1);
     const std::uint64_t readKey = mixed(shotKey, 2);
     const double gain = level * seconds;

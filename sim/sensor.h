@@ -36,7 +36,7 @@ struct NoiseKey {
 
 class Sensor {
 public:
-    explicit Sensor(const std::string& serial);
+    explicit Sensor(const std::string& serial, double celsius = 25);
 
     /// One exposure of the view's pixels, whose light is `rate` times `level` in electrons per
     /// second. No rate: dark. Binned as the protocol says.
@@ -52,6 +52,7 @@ public:
 
 private:
     std::uint64_t key_;
+    double celsius_;
     Image<float> response_;  // of the whole sensor
 };
 

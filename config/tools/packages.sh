@@ -18,21 +18,23 @@ install_packages() {
     done
     [ ${#missing[@]} -gt 0 ] || return 0
     if [ "$(id -u)" != 0 ]; then
-        if ! command -v sudo >/dev/null || ! sudo -n true 2>/dev/null; then
-            echo "Packages are missing; please run: sudo apt-get install ${missing[*]}" >&2
+        if ! command -v sudo >/dev/null || ! { sudo -n true 2>/dev/null ||
+            { [ -t 0 ] && sudo -v; }; }; then
+            echo "Packages are missing; please run as root: apt-get update &&" \
+                "apt-get install --no-install-recommends ${missing[*]}" >&2
             return 1
         fi
         as_root=(sudo)
     fi
     echo "Installing ${#missing[@]} packages: ${missing[*]}"
-    as_root+=(env DEBIAN_FRONTEND=noninteractive apt-get -qq)
+    as_root+=(env DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=120)
     local log
     log=$(mktemp)
     if ! { "${as_root[@]}" update &&
         "${as_root[@]}" -y --no-install-recommends install "${missing[@]}"; } </dev/null >"$log" 2>&1; then
         tail -n 15 "$log" >&2
         rm -f "$log"
-        echo "apt could not install them; please run: sudo apt-get install ${missing[*]}" >&2
+        echo "apt could not install them; please run as root: apt-get update && apt-get install --no-install-recommends ${missing[*]}" >&2
         return 1
     fi
     rm -f "$log"

@@ -1,6 +1,7 @@
-// Commands on files: info, eval, convert, plot. None of them needs a rig or takes the store's lock.
+// Commands on files: eval, convert, plot. None of them needs a rig or takes the store's lock.
 
-#include <cmath>
+#include <algorithm>
+#include <cctype>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -9,10 +10,10 @@
 #include "proc/core/number_text.h"
 #include "proc/core/parallel.h"
 #include "proc/formats/file_bytes.h"
+#include "proc/formats/file_degrees.h"
 #include "proc/formats/gonio_exr.h"
 #include "proc/formats/points_csv.h"
 #include "proc/formats/zemax.h"
-#include "proc/optics/cell_grid.h"
 #include "proc/report/hemisphere_map.h"
 #include "proc/report/slice_plot.h"
 #include "proc/table/specular_fill.h"
@@ -22,81 +23,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
-
-Json degreesOf(const std::vector<Radians>& angles) {
-    Json list = Json::array();
-    for (Radians angle : angles) list.push_back(std::round(angle.degrees() * 1e6) / 1e6);
-    return list;
-}
-
-Json sampleJson(const proc::SampleSet& sample) {
-    Json json;
-    const proc::SampleInfo& info = sample.info;
-    json["name"] = info.name;
-    json["rig"] = info.rigSerial;
-    json["calibration"] = info.calibrationId;
-    json["date"] = info.dateUtc;
-    json["effort"] = info.effort;
-    json["notes"] = info.operatorNotes;
-    json["software"] = info.softwareVersion;
-    json["reference"] = info.referenceCertificate;
-    json["rig_seconds"] = info.rigSeconds;
-    json["compute_seconds"] = info.computeSeconds;
-    if (!info.truthSpec.empty()) json["truth"] = info.truthSpec;
-    if (!info.budgetJson.empty()) json["budget"] = Json::parse(info.budgetJson, nullptr, false);
-    Json leds = Json::array();
-    for (const proc::LedTable& led : sample.leds) {
-        Json entry;
-        entry["theta_i_deg"] = std::round(led.incidence.degrees() * 1e6) / 1e6;
-        for (Band b : kBands) {
-            const proc::CellSamples& cells = led.bands[index(b)];
-            int measured = 0;
-            double solidAngle = 0, reflected = 0;
-            for (std::size_t cell = 0; cell < cells.size(); ++cell) {
-                if (!cells.present(cell)) continue;
-                ++measured;
-                const double omega = proc::CellGrid::solidAngle(cell);
-                solidAngle += omega;
-                reflected += cells.f[cell] * proc::CellGrid::centre(cell).z() * omega;
-            }
-            entry[std::string(letter(b))] = {{"measured_cells", measured},
-                                             {"solid_angle_sr", solidAngle},
-                                             {"reflected_fraction_within_measured", reflected}};
-        }
-        leds.push_back(entry);
-    }
-    json["leds"] = leds;
-    return json;
-}
-
-Json tableJson(const proc::SpecularTable& table) {
-    Json json;
-    json["incidences_deg"] = table.incidenceDeg;
-    json["rotations_deg"] = table.rotationDeg;
-    json["azimuths"] = table.azimuthDeg.size();
-    json["radials"] = table.radialDeg.size();
-    json["plane_symmetrical"] = table.symmetry == proc::TableSymmetry::PlaneSymmetrical;
-    json["planes"] = table.planes.size();
-    Json tis = Json::array();
-    for (const proc::TablePlane& plane : table.planes) tis.push_back(plane.tis);
-    json["tis_as_written"] = tis;
-    json["comments"] = table.comments;
-    return json;
-}
-
-/// A nested document as indented lines, for people.
-void printPlain(const Json& json, const std::string& indent) {
-    for (const auto& [key, value] : json.items()) {
-        if (value.is_object() ||
-            (value.is_array() && !value.empty() && value.front().is_structured())) {
-            std::cout << indent << key << ":\n";
-            printPlain(value, indent + "  ");
-        } else {
-            std::cout << indent << key << ": "
-                      << (value.is_string() ? value.get<std::string>() : value.dump()) << "\n";
-        }
-    }
-}
 
 std::vector<Answer> answersAt(const Scatterer& scatterer, const std::vector<LightView>& pairs) {
     std::vector<Answer> answers(pairs.size());
@@ -133,8 +59,14 @@ Result<void> convertToZemax(const CommonOptions& common,
                             const Material& from,
                             const fs::path& output,
                             Json& files) {
+    if (from.table != nullptr) {  // as it is: nothing to resample
+        const proc::Written written = proc::writeZemax(*from.table);
+        if (Result<void> done = proc::writeFile(output, written.bytes); !done) return done;
+        reportLoss(common, output, written.loss, files);
+        return {};
+    }
     std::vector<double> incidences;
-    for (Radians i : from.incidences()) incidences.push_back(std::round(i.degrees() * 1e9) / 1e9);
+    for (Radians i : from.incidences()) incidences.push_back(proc::fileDegrees(i));
     const auto grid = proc::SpecularGrid::oneDegree(incidences, proc::TableSymmetry::Asymmetrical);
     const bool mono = from.scatterer->bandCount() == BandCount::One;
     for (Band band : kBands) {
@@ -152,24 +84,28 @@ Result<void> convertToZemax(const CommonOptions& common,
     return {};
 }
 
-}  // namespace
-
-Result<void> info(const CommonOptions& common, const std::string& file) {
-    const Result<Material> material = openMaterial(file, common.store);
-    if (!material) return material.error();
-    Json json = {{"schema", "gonio/info/1"}, {"file", file}, {"kind", material->kind}};
-    json["incidences_deg"] = degreesOf(material->incidences());
-    json["bands"] = material->scatterer->bandCount() == BandCount::One ? 1 : 3;
-    if (material->sample != nullptr) json.update(sampleJson(*material->sample));
-    if (material->table != nullptr) json.update(tableJson(*material->table));
-    if (common.json) {
-        std::cout << json.dump(2) << "\n";
-    } else {
-        json.erase("schema");
-        printPlain(json, "");
+/// What a plot is of: the sample's own name, the model, or the file's.
+std::string titleOf(const std::string& f, const Material& material) {
+    if (material.sample != nullptr && !material.sample->info.name.empty()) {
+        return material.sample->info.name;
     }
-    return {};
+    if (material.kind == "model") return f.substr(f.find(':') + 1);
+    return fs::path(f).stem().string();
 }
+
+/// Letters, digits and a few signs, at most 80 of them.
+std::string fileNameOf(std::string title) {
+    constexpr std::size_t kLongest = 80;
+    title.resize(std::min(title.size(), kLongest));
+    for (char& c : title) {
+        const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' ||
+                           c == '_' || c == '-' || c == '+';
+        if (!plain) c = '-';
+    }
+    return title;
+}
+
+}  // namespace
 
 Result<void> eval(const CommonOptions& common, const EvalOptions& options) {
     const Result<Material> material = openMaterial(options.file, common.store);
@@ -215,20 +151,18 @@ Result<void> convert(const CommonOptions& common, const ConvertOptions& options)
     }
     if (!done) return done;
     if (common.json)
-        std::cout << Json{{"schema", "gonio/convert/1"}, {"files", files}}.dump(2) << "\n";
+        std::cout << Json{{"schema", "gonio/convert/1"}, {"files", files}}.dump(
+                         2, ' ', false, Json::error_handler_t::replace)
+                  << "\n";
     return {};
 }
 
 Result<void> plot(const CommonOptions& common, const PlotOptions& options) {
     const Result<Material> material = openMaterial(options.file, common.store);
     if (!material) return material.error();
-    std::string name = fs::path(options.file).stem().string();
-    if (material->sample != nullptr && !material->sample->info.name.empty())
-        name = material->sample->info.name;
-    for (char& c : name) {
-        if (c == '/' || c == ':' || c == ',' || c == '=') c = '-';
-    }
-    const proc::PlotRequest request{.title = name, .incidences = material->incidences()};
+    const std::string title = titleOf(options.file, *material);
+    const std::string name = fileNameOf(title);
+    const proc::PlotRequest request{.title = title, .incidences = material->incidences()};
     std::error_code ignored;
     if (!options.output.empty()) fs::create_directories(options.output, ignored);
     const fs::path map = options.output / (name + ".map.svg");
@@ -239,9 +173,9 @@ Result<void> plot(const CommonOptions& common, const PlotOptions& options) {
     if (auto done = proc::writeFile(slice, proc::slicePlots(*material->scatterer, request)); !done)
         return done;
     if (common.json) {
-        std::cout
-            << Json{{"schema", "gonio/plot/1"}, {"files", {map.string(), slice.string()}}}.dump(2)
-            << "\n";
+        std::cout << Json{{"schema", "gonio/plot/1"}, {"files", {map.string(), slice.string()}}}
+                         .dump(2, ' ', false, Json::error_handler_t::replace)
+                  << "\n";
     } else if (!common.quiet) {
         std::cout << map.string() << "\n" << slice.string() << "\n";
     }

@@ -63,9 +63,10 @@ void Program::addSim() {
     sub->add_option(
            "what", place.what, "black, white, mirror, nothing, a file, model:SPEC or sample:NAME")
         ->required();
-    sub->add_option("--tilt-x", place.tiltXDegrees, "wedge about x, degrees");
-    sub->add_option("--tilt-y,--tilt", place.tiltYDegrees, "wedge about y, degrees");
-    sub->add_option("--seed", place.seed, "seed of the rig's noise (kept)");
+    sub->add_option("--tilt-x", place.tiltXDegrees, "wedge of the mirror about x, degrees");
+    sub->add_option("--tilt-y,--tilt", place.tiltYDegrees, "wedge of the mirror about y, degrees");
+    sub->add_option("--seed", place.seed, "seed of the rig's noise, 0 or above (kept)")
+        ->check(CLI::NonNegativeNumber);
     sub->add_option(
         "--serial", place.serial, "serial number: lens and pixels are drawn from it (kept)");
     sub->add_option("--systematic",
@@ -174,7 +175,12 @@ int run(int argc, char** argv) {
     }
     if (program.verbose) log::setLevel(log::Level::Info);
     const Result<void> done = program.chosen();
-    if (done) return 0;
+    std::cout.flush();
+    if (done && std::cout) return 0;
+    if (done) {
+        std::cerr << "gonio: write to stdout: failed; is the disk full?\n";
+        return exitCode(ErrorKind::File);
+    }
     std::cerr << "gonio: " << done.error().message << "\n";
     return exitCode(done.error().kind);
 }

@@ -12,7 +12,10 @@
 #include "daemon/cli/progress.h"
 #include "daemon/measurement.h"
 #include "daemon/sim_bench.h"
+#include "daemon/store_lock.h"
+#include "proc/core/log.h"
 #include "proc/core/number_text.h"
+#include "proc/formats/file_bytes.h"
 #include "proc/formats/gonio_exr.h"
 
 namespace gonio::daemon {
@@ -42,30 +45,42 @@ std::string utcNow() {
     return {text, std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc)};
 }
 
-/// An opened simulated rig with what the store knows of it. Keeps the store's next plan step up to
-/// date, whatever happens.
+/// No session takes more captures; a session that is killed leaves this gap.
+constexpr std::uint64_t kReservedSteps = 1 << 16;
+
+/// An opened simulated rig with what the store knows of it, for this process alone. Its plan steps
+/// are reserved at the beginning, so that no later session takes one of them again however this one
+/// ends.
 class RigSession {
 public:
     static Result<std::unique_ptr<RigSession>> open(const CommonOptions& common,
                                                     const fs::path& profile) {
         Result<Store> store = Store::open(common.store);
         if (!store) return store.error();
+        Result<StoreLock> lock = StoreLock::take(store->root());
+        if (!lock) return lock.error();
         const Result<SimState> state = readSimState(*store);
         if (!state) return state.error();
+        SimState reserved = *state;
+        reserved.nextPlanStep += kReservedSteps;
+        if (Result<void> kept = writeSimState(*store, reserved); !kept) return kept.error();
         Result<RigProfile> known = readProfile(profile.empty() ? defaultProfile() : profile);
         if (!known) return known.error();
         Result<std::unique_ptr<sim::InProcessDoor>> door = openSim(*state, *store);
         if (!door) return door.error();
         auto rig = driver::Rig::open(**door, state->nextPlanStep);
         if (!rig) return rig.error();
-        return std::unique_ptr<RigSession>(new RigSession(
-            std::move(*store), *state, std::move(*known), std::move(*door), std::move(*rig)));
+        return std::unique_ptr<RigSession>(new RigSession(std::move(*store),
+                                                          std::move(*lock),
+                                                          *state,
+                                                          std::move(*known),
+                                                          std::move(*door),
+                                                          std::move(*rig)));
     }
     ~RigSession() { (void)writeSimState(store, state); }
     RigSession(const RigSession&) = delete;
     RigSession& operator=(const RigSession&) = delete;
 
-    [[nodiscard]] fs::path folder() const { return store.rig(state.serial); }
     [[nodiscard]] double rigSeconds() const { return onRig.elapsed().count(); }
     [[nodiscard]] Bench bench(Progress& progress) {
         return {.rig = rig,
@@ -88,6 +103,7 @@ public:
     }
 
     Store store;
+    StoreLock lock;
     SimState state;
     RigProfile profile;
     SystemClock computer;
@@ -95,9 +111,14 @@ public:
     driver::Rig rig;
 
 private:
-    RigSession(
-        Store s, SimState st, RigProfile p, std::unique_ptr<sim::InProcessDoor> d, driver::Rig r)
+    RigSession(Store s,
+               StoreLock l,
+               SimState st,
+               RigProfile p,
+               std::unique_ptr<sim::InProcessDoor> d,
+               driver::Rig r)
         : store(std::move(s)),
+          lock(std::move(l)),
           state(std::move(st)),
           profile(std::move(p)),
           door(std::move(d)),
@@ -114,6 +135,10 @@ std::map<std::string, std::string> rawInfo(const proc::SampleInfo& info) {
             {"software", info.softwareVersion}};
 }
 
+Result<std::string> rawBytes(const proc::SampleInfo& info, std::vector<proc::RawState> states) {
+    return proc::encodeGraw({.info = rawInfo(info), .states = std::move(states)});
+}
+
 void finish(proc::SampleInfo& info, const RigSession& session, const Captured& captured) {
     info.rigSeconds = session.rigSeconds();
     info.computeSeconds = captured.compute.count();
@@ -122,10 +147,26 @@ void finish(proc::SampleInfo& info, const RigSession& session, const Captured& c
 
 void print(const CommonOptions& common, const Json& json, const std::string& line) {
     if (common.json) {
-        std::cout << json.dump(2) << "\n";
+        std::cout << json.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
     } else if (!common.quiet) {
         std::cout << line << "\n";
     }
+}
+
+Error notPlaced(const RigSession& session, const std::string& reference) {
+    return {ErrorKind::Quality,
+            "under the rig lies '" + session.state.placed + "'; place the " + reference +
+                " first: gonio sim place " + reference};
+}
+
+/// A reference is of this rig's LEDs, or its cells would be taken for others'.
+Result<void> checkLeds(const ReferenceRecord& reference, const RigSession& session) {
+    const std::size_t leds = session.rig.identify().ledAngles.size();
+    if (reference.signals.size() == leds) return {};
+    return Error{ErrorKind::Quality,
+                 "the " + reference.info.name + " reference of " + session.state.serial + " has " +
+                     std::to_string(reference.signals.size()) + " LEDs, the rig " +
+                     std::to_string(leds) + "; run: gonio calibrate " + reference.info.name};
 }
 
 Result<void> calibrateMirror(const CommonOptions& common, RigSession& session) {
@@ -133,9 +174,7 @@ Result<void> calibrateMirror(const CommonOptions& common, RigSession& session) {
         session.rig, session.profile, session.state.nextPlanStep, session.computer, {}};
     Progress progress("mirror", mirrorSteps(probe), session.computer, !common.quiet);
     if (session.state.placed != "mirror") {
-        return Error{ErrorKind::Quality,
-                     "under the rig lies '" + session.state.placed +
-                         "'; place the mirror first: gonio sim place mirror"};
+        return notPlaced(session, "mirror");
     }
     // The simulated rig's operator changes the wedge between the placements.
     const PlaceMirror place = [&](const proc::Wedge& wedge) -> Result<void> {
@@ -146,7 +185,10 @@ Result<void> calibrateMirror(const CommonOptions& common, RigSession& session) {
     Result<LensRecord> lens = measureLens(session.bench(progress), place);
     if (!lens) return lens.error();
     lens->dateUtc = utcNow();
-    if (Result<void> kept = writeLens(session.folder(), *lens); !kept) return kept;
+    const auto kept = session.store.addCalibration(
+        {.rig = session.state.serial, .kind = "mirror", .dateUtc = lens->dateUtc},
+        {.file = encodeLens(*lens)});
+    if (!kept) return kept.error();
     print(common,
           {{"schema", "gonio/calibrate-mirror/1"},
            {"rig", session.state.serial},
@@ -154,7 +196,7 @@ Result<void> calibrateMirror(const CommonOptions& common, RigSession& session) {
            {"rms_px", lens->fit.rmsPixels},
            {"worst_px", lens->fit.worstPixels},
            {"rig_seconds", session.rigSeconds()},
-           {"file", (session.folder() / "lens.json").string()}},
+           {"file", kept->file.string()}},
           "lens map of " + session.state.serial + ": " + std::to_string(lens->spots) +
               " mirror spots, " + fixed(lens->fit.rmsPixels, 3) + " px rms, worst " +
               fixed(lens->fit.worstPixels, 3) + " px");
@@ -163,42 +205,47 @@ Result<void> calibrateMirror(const CommonOptions& common, RigSession& session) {
 
 Result<void> calibrateTile(const CommonOptions& common, RigSession& session, bool white) {
     const std::string name = white ? "white" : "black";
-    const Result<LensRecord> lens = readLens(session.folder());
+    if (session.state.placed != name) return notPlaced(session, name);
+    const Result<LensRecord> lens = loadLens(session.store, session.state.serial);
     if (!lens) return lens.error();
     const Bench probe{
         session.rig, session.profile, session.state.nextPlanStep, session.computer, {}};
     Progress progress(name, placementSteps(probe), session.computer, !common.quiet);
-    const Result<Captured> captured = measurePlacement(session.bench(progress),
-                                                       lens->fit.map,
-                                                       white ? kWhiteBracket : kBlackBracket,
-                                                       2 * kDarkFrames);
+    Result<Captured> captured = measurePlacement(session.bench(progress),
+                                                 lens->fit.map,
+                                                 white ? kWhiteBracket : kBlackBracket,
+                                                 2 * kDarkFrames);
     if (!captured) return captured.error();
     if (white) {
-        const Result<ReferenceRecord> black = readSignals(session.folder(), "black");
+        const Result<ReferenceRecord> black =
+            loadReference(session.store, session.state.serial, "black");
         if (!black) return black.error();
+        if (Result<void> fits = checkLeds(*black, session); !fits) return fits;
         if (Result<void> bright = checkWhite(captured->signals, black->signals); !bright)
             return bright;
     }
     proc::SampleInfo info = session.info(name);
     finish(info, session, *captured);
-    const std::vector<Radians> leds = session.rig.identify().ledAngles;
-    const fs::path folder = session.folder();
-    if (Result<void> kept = writeSignals(folder, name, info, leds, captured->signals); !kept)
-        return kept;
-    proc::RawCapture raw{.info = rawInfo(info), .states = {}};
-    raw.states = captured->raw.states;
-    if (Result<void> kept = proc::writeGraw(folder / (name + ".graw"), raw); !kept) return kept;
+    const std::size_t states = captured->raw.states.size();
+    const Result<std::string> raw = rawBytes(info, std::move(captured->raw.states));
+    if (!raw) return raw.error();
+    const Result<std::string> bytes =
+        encodeReference({info, captured->signals}, session.rig.identify().ledAngles);
+    if (!bytes) return bytes.error();
+    const auto kept = session.store.addCalibration(
+        {.rig = session.state.serial, .kind = name, .dateUtc = info.dateUtc},
+        {.file = *bytes, .raw = *raw});
+    if (!kept) return kept.error();
     print(common,
           {{"schema", "gonio/calibrate-" + name + "/1"},
            {"rig", session.state.serial},
-           {"states", captured->raw.states.size()},
+           {"states", states},
            {"chi_square_per_freedom", captured->chiSquarePerFreedom},
            {"rig_seconds", info.rigSeconds},
            {"compute_seconds", info.computeSeconds},
-           {"file", (folder / (name + ".gonio")).string()}},
-          name + " reference of " + session.state.serial + ": " +
-              std::to_string(captured->raw.states.size()) + " states in " +
-              fixed(info.rigSeconds, 1) + " s on the rig");
+           {"file", kept->file.string()}},
+          name + " reference of " + session.state.serial + ": " + std::to_string(states) +
+              " states in " + fixed(info.rigSeconds, 1) + " s on the rig");
     return {};
 }
 
@@ -230,23 +277,25 @@ Result<void> measure(const CommonOptions& common, const MeasureOptions& options)
     const auto opened = RigSession::open(common, options.profile);
     if (!opened) return opened.error();
     RigSession& session = **opened;
-    const auto file = session.store.sample(options.name, ".gonio");
-    if (!file) return file.error();
-    const auto rawFile = session.store.sample(options.name, ".graw");
-    if (!rawFile) return rawFile.error();
-    const Result<LensRecord> lens = readLens(session.folder());
+    if (Result<void> good = checkSampleName(options.name); !good) return good;
+    const Result<LensRecord> lens = loadLens(session.store, session.state.serial);
     if (!lens) return lens.error();
-    const Result<ReferenceRecord> black = readSignals(session.folder(), "black");
+    const Result<ReferenceRecord> black =
+        loadReference(session.store, session.state.serial, "black");
     if (!black) return black.error();
-    const Result<ReferenceRecord> white = readSignals(session.folder(), "white");
+    const Result<ReferenceRecord> white =
+        loadReference(session.store, session.state.serial, "white");
     if (!white) return white.error();
+    for (const ReferenceRecord* reference : {&*black, &*white}) {
+        if (Result<void> fits = checkLeds(*reference, session); !fits) return fits;
+    }
     const Result<References> certified = loadReferences(session.profile);
     if (!certified) return certified.error();
 
     const Bench probe{
         session.rig, session.profile, session.state.nextPlanStep, session.computer, {}};
     Progress progress(options.name, placementSteps(probe), session.computer, !common.quiet);
-    const Result<Captured> captured = measurePlacement(
+    Result<Captured> captured = measurePlacement(
         session.bench(progress), lens->fit.map, sampleBracket(options.effort), kDarkFrames);
     if (!captured) return captured.error();
     proc::SampleInfo info = session.info(options.name);
@@ -263,21 +312,28 @@ Result<void> measure(const CommonOptions& common, const MeasureOptions& options)
                                           std::move(info));
     set.info.computeSeconds += calibrating.elapsed().count();
 
-    // The raw capture first: it is what cannot be had again.
-    proc::RawCapture raw{.info = rawInfo(set.info), .states = {}};
-    raw.states = captured->raw.states;
-    if (Result<void> kept = proc::writeGraw(*rawFile, raw); !kept) return kept;
-    if (Result<void> kept = proc::writeGonio(*file, set); !kept) return kept;
+    const Result<std::string> raw = rawBytes(set.info, std::move(captured->raw.states));
+    if (!raw) return raw.error();
+    const Result<std::string> bytes = proc::encodeGonio(set);
+    if (!bytes) return bytes.error();
+    const auto kept = session.store.addSample(
+        {.name = options.name, .rig = session.state.serial, .dateUtc = set.info.dateUtc},
+        {.file = *bytes, .raw = *raw});
+    if (!kept) return kept.error();
+    if (!kept->movedTo.empty()) {
+        log::warning("sample '" + options.name + "' was there; it is kept as '" + kept->movedTo +
+                     "'");
+    }
     if (!options.output.empty()) {
-        if (Result<void> kept = proc::writeGonio(options.output, set); !kept) return kept;
+        if (Result<void> copied = proc::writeFile(options.output, *bytes); !copied) return copied;
     }
     const int cells = measuredCells(set);
     const double achieved = set.info.achievedUncertainty.value_or(0);
     print(common,
           {{"schema", "gonio/measure/1"},
            {"name", options.name},
-           {"file", file->string()},
-           {"raw", rawFile->string()},
+           {"file", kept->sample.file.string()},
+           {"raw", kept->sample.raw.string()},
            {"effort", set.info.effort},
            {"measured_cells", cells},
            {"median_relative_uncertainty", achieved},
@@ -287,7 +343,7 @@ Result<void> measure(const CommonOptions& common, const MeasureOptions& options)
           options.name + ": " + std::to_string(cells) + " BRDF samples, median uncertainty " +
               fixed(100 * achieved, 2) + " % (k = 1), " + fixed(set.info.rigSeconds, 1) +
               " s on the rig, " + fixed(set.info.computeSeconds, 1) + " s computing; " +
-              file->string());
+              kept->sample.file.string());
     return {};
 }
 

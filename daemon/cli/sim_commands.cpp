@@ -1,6 +1,7 @@
 // The simulated rig's own door: what lies under it, and how far a measurement is from its truth.
 
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -8,6 +9,7 @@
 #include "daemon/material.h"
 #include "daemon/score.h"
 #include "daemon/sim_bench.h"
+#include "daemon/store_lock.h"
 #include "proc/core/number_text.h"
 #include "proc/formats/file_bytes.h"
 #include "proc/formats/gonio_exr.h"
@@ -41,6 +43,10 @@ std::vector<std::string> filesOf(const fs::path& gonio) {
     return files;
 }
 
+bool isReference(const std::string& what) {
+    return what == "nothing" || what == "mirror" || what == "white" || what == "black";
+}
+
 /// A measured sample held against its truth.
 struct Scored {
     fs::path file;
@@ -51,15 +57,17 @@ struct Scored {
 Result<Scored> scoreFile(const fs::path& file, const fs::path& store) {
     const Result<proc::SampleSet> sample = proc::readGonio(file);
     if (!sample) return sample.error();
-    if (sample->info.truthSpec.empty()) {
-        return Error{ErrorKind::Usage,
-                     file.string() + ": its truth is not known: it is not of a simulated rig"};
+    if (sample->info.truthSpec.empty() || isReference(sample->info.truthSpec)) {
+        return Error{
+            ErrorKind::Usage,
+            file.string() + ": its truth is not known: it is no sample of a simulated rig"};
     }
     const Result<Material> truth = openMaterial(sample->info.truthSpec, store);
     if (!truth) return truth.error();
     return Scored{file, sample->info, score(*sample, *truth->scatterer)};
 }
 
+/// The document of the quickstart.
 Json summaryOf(const std::vector<Scored>& scored) {
     Json samples = Json::array();
     std::int64_t seed = 0;
@@ -73,11 +81,20 @@ Json summaryOf(const std::vector<Scored>& scored) {
                            {"median_relative_error", score.medianRelativeError},
                            {"p95_relative_error", score.p95RelativeError},
                            {"within_2u", score.within2u},
-                           {"within_2u_random", score.within2uRandom},
                            {"cells", score.cells},
                            {"files", filesOf(file)}});
     }
     return {{"schema", "gonio/quickstart/1"}, {"seed", seed}, {"samples", samples}};
+}
+
+/// The same, and the share that noise alone explains.
+Json scoresOf(const std::vector<Scored>& scored) {
+    Json json = summaryOf(scored);
+    json["schema"] = "gonio/sim-score/1";
+    for (std::size_t i = 0; i < scored.size(); ++i) {
+        json["samples"][i]["within_2u_random"] = scored[i].score.within2uRandom;
+    }
+    return json;
 }
 
 void printTable(const std::vector<Scored>& scored) {
@@ -93,21 +110,52 @@ void printTable(const std::vector<Scored>& scored) {
     }
 }
 
+Result<void> check(const PlaceOptions& options) {
+    constexpr double kSteepest = 30;
+    constexpr std::size_t kLongestSerial = 32;
+    for (const double tilt : {options.tiltXDegrees, options.tiltYDegrees}) {
+        if (!(std::abs(tilt) <= kSteepest)) {
+            return Error{ErrorKind::Usage,
+                         "sim place: a tilt of " + shortest(tilt) + ", wanted -30 to 30 degrees"};
+        }
+        if (tilt != 0 && options.what != "mirror") {
+            return Error{ErrorKind::Usage, "sim place: only the mirror can be tilted"};
+        }
+    }
+    if (!options.serial) return {};
+    const std::string& serial = *options.serial;
+    const bool printable =
+        std::all_of(serial.begin(), serial.end(), [](char c) { return c > ' ' && c <= '~'; });
+    if (printable && !serial.empty() && serial.size() <= kLongestSerial) return {};
+    return Error{ErrorKind::Usage, "sim place: a serial is 1 to 32 printable characters"};
+}
+
+/// What will name the same thing from any folder, and after the store has changed.
+Result<std::string> lastingName(const std::string& what, Store& store) {
+    constexpr std::string_view kSample = "sample:";
+    if (isReference(what) || what.starts_with("model:")) return what;
+    if (!what.starts_with(kSample)) return fs::absolute(what).string();
+    const auto record = store.sample(what.substr(kSample.size()));
+    if (!record) return record.error();
+    return fs::absolute(record->file).string();
+}
+
 }  // namespace
 
 Result<void> simPlace(const CommonOptions& common, const PlaceOptions& options) {
-    const Result<Store> store = Store::open(common.store);
+    if (Result<void> good = check(options); !good) return good;
+    Result<Store> store = Store::open(common.store);
     if (!store) return store.error();
+    const Result<StoreLock> lock = StoreLock::take(store->root());
+    if (!lock) return lock.error();
     Result<SimState> state = readSimState(*store);
     if (!state) return state.error();
     if (options.seed) state->seed = *options.seed;
     if (options.serial) state->serial = *options.serial;
     if (options.systematic) state->systematic = *options.systematic;
-    state->placed = options.what;
-    const bool file = options.what.find(':') == std::string::npos && options.what != "nothing" &&
-                      options.what != "mirror" && options.what != "white" &&
-                      options.what != "black";
-    if (file) state->placed = fs::absolute(options.what).string();  // found from any folder later
+    const Result<std::string> placed = lastingName(options.what, *store);
+    if (!placed) return placed.error();
+    state->placed = *placed;
     state->wedge = {.aboutX = Radians::fromDegrees(options.tiltXDegrees),
                     .aboutY = Radians::fromDegrees(options.tiltYDegrees)};
     // Opening it now tells at once what is wrong with it.
@@ -120,7 +168,7 @@ Result<void> simPlace(const CommonOptions& common, const PlaceOptions& options) 
                           {"placed", options.what},
                           {"tilt_x_deg", options.tiltXDegrees},
                           {"tilt_y_deg", options.tiltYDegrees}}
-                         .dump(2)
+                         .dump(2, ' ', false, Json::error_handler_t::replace)
                   << "\n";
     } else if (!common.quiet) {
         std::cout << "under the simulated rig " << state->serial << ": " << options.what << "\n";
@@ -135,14 +183,15 @@ Result<void> simScore(const CommonOptions& common, const ScoreOptions& options) 
         if (!one) return one.error();
         scored.push_back(std::move(*one));
     }
-    const Json summary = summaryOf(scored);
     if (common.json) {
-        std::cout << summary.dump(2) << "\n";
+        std::cout << scoresOf(scored).dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
     } else {
         printTable(scored);
     }
     if (options.output.empty()) return {};
-    return proc::writeFile(options.output, summary.dump(2) + "\n");
+    return proc::writeFile(
+        options.output,
+        summaryOf(scored).dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace gonio::daemon

@@ -38,6 +38,16 @@ Result<std::size_t> regularSize(const fs::path& path) {
     return static_cast<std::size_t>(size);
 }
 
+/// `named` stands in errors.
+Result<void> writeTo(const fs::path& path, const fs::path& named, std::string_view bytes) {
+    errno = 0;
+    std::ofstream out(path, std::ios::binary | std::ios::trunc);
+    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    out.close();
+    if (!out) return fileError("write", named, lastReason());
+    return {};
+}
+
 }  // namespace
 
 Result<std::string> readFile(const fs::path& path, std::size_t limit) {
@@ -58,22 +68,21 @@ Result<std::string> readHead(const fs::path& path, std::size_t count) {
     return readUpTo(path, std::min(*size, count));
 }
 
-Result<void> writeFile(const fs::path& path, std::string_view bytes) {
+Result<void> writeFile(const fs::path& given, std::string_view bytes) {
+    std::error_code error;
+    const fs::file_status status = fs::status(given, error);
+    if (fs::exists(status) && !fs::is_regular_file(status)) return writeTo(given, given, bytes);
+    // A link stays one: the file behind it is replaced.
+    const fs::path path = fs::is_symlink(given, error) ? fs::weakly_canonical(given, error) : given;
     fs::path part = path;
     part += ".part";
-    errno = 0;
-    std::ofstream out(part, std::ios::binary | std::ios::trunc);
-    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    out.close();
-    std::error_code error;
-    if (!out) {
-        Error failed = fileError("write", path, lastReason());
+    if (Result<void> written = writeTo(part, given, bytes); !written) {
         fs::remove(part, error);
-        return failed;
+        return written;
     }
     fs::rename(part, path, error);
     if (!error) return {};
-    Error failed = fileError("write", path, error.message());
+    Error failed = fileError("write", given, error.message());
     fs::remove(part, error);
     return failed;
 }

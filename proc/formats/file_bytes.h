@@ -19,7 +19,8 @@ inline constexpr std::size_t kLargestFile = std::size_t{512} << 20U;
                                            std::size_t limit = kLargestFile);
 /// At most the first `count` bytes, from a file of any size.
 [[nodiscard]] Result<std::string> readHead(const std::filesystem::path& path, std::size_t count);
-/// Replaces the file. A failed write (full disk) is a File error, and leaves no half file behind.
+/// Replaces the file; a pipe or a device is written into. A failed write (full disk) is a File
+/// error, and leaves no half file behind.
 [[nodiscard]] Result<void> writeFile(const std::filesystem::path& path, std::string_view bytes);
 
 }  // namespace gonio::proc

@@ -40,9 +40,8 @@ void markUsable(const Image<std::uint16_t>& picture,
     const std::size_t last = here.size() - 1;
     const auto atEnd = [&](std::size_t x) {
         const Beside columns = beside(static_cast<int>(x), picture.width());
-        return verdict(x,
-                       static_cast<std::size_t>(columns.before),
-                       static_cast<std::size_t>(columns.after));
+        return verdict(
+            x, static_cast<std::size_t>(columns.before), static_cast<std::size_t>(columns.after));
     };
     usable[0] = atEnd(0);
     for (std::size_t x = 1; x < last; ++x) usable[x] = verdict(x, x - 1, x + 1);

@@ -1,6 +1,6 @@
 #pragma once
-// Which samples of a frame carry information about the light. The mask is hard, and its verdict on a
-// sample must not hang on the sample's own noise: "below 95 % of full scale" on the sample itself
+// Which samples of a frame carry information about the light. The mask is hard, and its verdict on
+// a sample must not hang on the sample's own noise: "below 95 % of full scale" on the sample itself
 // keeps the low half of the noise of a pixel whose mean lies there, which biases it by 0.8 sigma
 // (0.8 % on a full well of 1e4 electrons) - more than the noise of a whole cell. So the neighbours
 // decide, whose noise is independent:

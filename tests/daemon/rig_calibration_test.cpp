@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
+#include <optional>
 
 #include "tests/support/temp_folder.h"
 
@@ -41,11 +41,26 @@ PlacementSignals signals() {
     return {{signal, signal, signal}};
 }
 
-TEST(LensRecord, SurvivesTheStoreToTheLastBit) {
-    const test::TempFolder folder;
+class RigCalibrationInStore : public testing::Test {
+protected:
+    void SetUp() override {
+        auto opened = Store::open(folder.path());
+        ASSERT_TRUE(opened) << opened.error().message;
+        store.emplace(std::move(*opened));
+    }
+    void keep(const std::string& kind, const std::string& bytes) {
+        const auto added = store->addCalibration({.rig = "R1", .kind = kind, .dateUtc = "today"},
+                                                 {.file = bytes, .raw = {}});
+        ASSERT_TRUE(added) << added.error().message;
+    }
+    test::TempFolder folder;
+    std::optional<Store> store;
+};
+
+TEST_F(RigCalibrationInStore, LensSurvivesToTheLastBit) {
     const LensRecord lens = lensRecord();
-    ASSERT_TRUE(writeLens(folder / "rig", lens));
-    const auto read = readLens(folder / "rig");
+    keep("mirror", encodeLens(lens));
+    const auto read = loadLens(*store, "R1");
     ASSERT_TRUE(read) << read.error().message;
     EXPECT_EQ(read->fit.map.parameters(), lens.fit.map.parameters());
     EXPECT_EQ(read->fit.covariance, lens.fit.covariance);
@@ -55,37 +70,29 @@ TEST(LensRecord, SurvivesTheStoreToTheLastBit) {
     EXPECT_EQ(read->dateUtc, lens.dateUtc);
 }
 
-TEST(LensRecord, MissingAndBrokenOnesSayWhatToRun) {
-    const test::TempFolder folder;
-    const auto missing = readLens(folder.path());
+TEST_F(RigCalibrationInStore, MissingAndBrokenLensSayWhatToRun) {
+    const auto missing = loadLens(*store, "R1");
     ASSERT_FALSE(missing);
     EXPECT_EQ(missing.error().kind, ErrorKind::Quality);
     EXPECT_NE(missing.error().message.find("gonio calibrate mirror"), std::string::npos);
-
-    ASSERT_TRUE(writeLens(folder.path(), lensRecord()));
-    std::ofstream(folder / "lens.json") << R"({"schema":"gonio/lens/1","values":[1,2]})";
-    const auto broken = readLens(folder.path());
-    ASSERT_FALSE(broken);
-    EXPECT_EQ(broken.error().kind, ErrorKind::File);
-    EXPECT_NE(broken.error().message.find("gonio calibrate mirror"), std::string::npos);
+    for (const std::string bad : {"", "{", "[]", R"({"schema":"gonio/lens/1","values":[1,2]})"}) {
+        const auto broken = decodeLens(bad, "lens map of R1");
+        ASSERT_FALSE(broken) << bad;
+        EXPECT_EQ(broken.error().kind, ErrorKind::File);
+        EXPECT_NE(broken.error().message.find("lens map of R1"), std::string::npos);
+        EXPECT_NE(broken.error().message.find("gonio calibrate mirror"), std::string::npos);
+    }
 }
 
-TEST(LensRecord, FolderThatCannotBeMadeIsNamed) {
-    const test::TempFolder folder;
-    std::ofstream(folder / "file") << "x";
-    const auto written = writeLens(folder / "file", lensRecord());
-    ASSERT_FALSE(written);
-    EXPECT_EQ(written.error().kind, ErrorKind::Busy);
-}
-
-TEST(ReferenceRecord, SurvivesTheStoreToFloatPrecision) {
-    const test::TempFolder folder;
+TEST_F(RigCalibrationInStore, ReferenceSurvivesToFloatPrecision) {
     const PlacementSignals kept = signals();
-    const proc::SampleInfo info{.name = "white", .rigSerial = "SIM-0001"};
-    ASSERT_TRUE(writeSignals(folder / "rig", "white", info, {20_deg}, kept));
-    const auto read = readSignals(folder / "rig", "white");
+    const proc::SampleInfo info{.name = "white", .rigSerial = "R1"};
+    const auto bytes = encodeReference({info, kept}, {20_deg});
+    ASSERT_TRUE(bytes) << bytes.error().message;
+    keep("white", *bytes);
+    const auto read = loadReference(*store, "R1", "white");
     ASSERT_TRUE(read) << read.error().message;
-    EXPECT_EQ(read->info.rigSerial, "SIM-0001");
+    EXPECT_EQ(read->info.rigSerial, "R1");
     ASSERT_EQ(read->signals.size(), 1U);
     for (Band band : kBands) {
         const proc::CellSignal& a = kept[0][index(band)];
@@ -105,12 +112,12 @@ TEST(ReferenceRecord, SurvivesTheStoreToFloatPrecision) {
     }
 }
 
-TEST(ReferenceRecord, MissingOneSaysWhatToRun) {
-    const test::TempFolder folder;
-    const auto read = readSignals(folder.path(), "black");
+TEST_F(RigCalibrationInStore, MissingReferenceSaysWhatToRun) {
+    const auto read = loadReference(*store, "R1", "black");
     ASSERT_FALSE(read);
     EXPECT_EQ(read.error().kind, ErrorKind::Quality);
     EXPECT_NE(read.error().message.find("gonio calibrate black"), std::string::npos);
+    EXPECT_EQ(decodeReference("no picture", "x").error().kind, ErrorKind::File);
 }
 
 }  // namespace

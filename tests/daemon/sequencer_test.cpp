@@ -28,8 +28,7 @@ protected:
     void place(const std::string& spec) {
         auto model = proc::makeModel(spec);
         ASSERT_TRUE(model) << model.error().message;
-        door.device().place(
-            {.role = sim::Role::Sample, .surface = std::move(*model), .wedge = {}});
+        door.device().place({.role = sim::Role::Sample, .surface = std::move(*model), .wedge = {}});
     }
     std::vector<Frame> bracket(const BracketPlan& plan) {
         Sequencer sequencer(*rig, profile, nextPlanStep);
@@ -80,9 +79,12 @@ TEST_F(SequencerOnSim, SharpLobeIsDimmedUntilNothingSaturates) {
 TEST_F(SequencerOnSim, BracketReachesAsFarAsItWasTold) {
     place("lambert,albedo=0.001");
     const auto longestOf = [](const std::vector<Frame>& frames) {
-        return std::max_element(frames.begin(), frames.end(), [](const auto& a, const auto& b) {
-                   return a.exposure.requested < b.exposure.requested;
-               })->exposure.requested;
+        return std::max_element(frames.begin(),
+                                frames.end(),
+                                [](const auto& a, const auto& b) {
+                                    return a.exposure.requested < b.exposure.requested;
+                                })
+            ->exposure.requested;
     };
     EXPECT_EQ(longestOf(bracket({})), profile.exposures.back());
     EXPECT_EQ(longestOf(bracket({.longest = 2})), profile.exposures[2]);

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <iterator>
+#include <optional>
 
 #include "daemon/sim_bench.h"
 #include "tests/support/temp_folder.h"
@@ -12,10 +14,10 @@ namespace {
 
 TEST(Store, IsMadeWhereItWasAskedFor) {
     const test::TempFolder folder;
-    const auto store = Store::open(folder / "a/b");
-    ASSERT_TRUE(store) << store.error().message;
-    EXPECT_TRUE(std::filesystem::is_directory(folder / "a/b/samples"));
-    EXPECT_EQ(store->rig("SIM-0001"), folder / "a/b/rigs/SIM-0001");
+    ASSERT_TRUE(Store::open(folder / "a/b"));
+    EXPECT_TRUE(std::filesystem::is_directory(folder / "a/b/objects"));
+    EXPECT_TRUE(std::filesystem::is_regular_file(folder / "a/b/gonio.db"));
+    EXPECT_TRUE(Store::open(folder / "a/b"));
 }
 
 TEST(Store, RefusesAPlaceThatIsAFile) {
@@ -27,33 +29,116 @@ TEST(Store, RefusesAPlaceThatIsAFile) {
     EXPECT_NE(store.error().message.find("--store"), std::string::npos);
 }
 
-TEST(Store, SampleNamesStayInsideTheStore) {
+TEST(Store, RefusesADatabaseThatIsNone) {
     const test::TempFolder folder;
+    std::ofstream(folder / "gonio.db") << std::string(5000, 'x');
     const auto store = Store::open(folder.path());
-    ASSERT_TRUE(store);
-    for (const std::string& good : {std::string("a"), std::string("Tile-7_b.2"), std::string("0"), std::string(64, 'x')}) {
-        const auto path = store->sample(good, ".gonio");
-        ASSERT_TRUE(path) << good;
-        EXPECT_EQ(*path, folder / "samples" / (good + ".gonio"));
-    }
-    for (const std::string bad :
-         {"", ".", "..", ".hidden", "-x", "_x", "a/b", "../x", "a b", "\xC3\xA4", "a\n"}) {
-        const auto path = store->sample(bad, ".gonio");
-        ASSERT_FALSE(path) << bad;
-        EXPECT_EQ(path.error().kind, ErrorKind::Usage);
-    }
-    EXPECT_FALSE(store->sample(std::string(65, 'x'), ".gonio"));
+    ASSERT_FALSE(store);
+    EXPECT_EQ(store.error().kind, ErrorKind::File);
+    EXPECT_NE(store.error().message.find("gonio.db"), std::string::npos);
 }
 
-TEST(Store, ListsSamplesByName) {
-    const test::TempFolder folder;
-    const auto store = Store::open(folder.path());
-    ASSERT_TRUE(store);
-    EXPECT_TRUE(store->sampleNames().empty());
-    for (const std::string name : {"b.gonio", "a.gonio", "a.graw", "c.gonio.part"}) {
-        std::ofstream(folder / "samples" / name) << "x";
+TEST(SampleName, IsPlain) {
+    for (const std::string& good :
+         {std::string("a"), std::string("Tile-7_b.2"), std::string("0"), std::string(64, 'x')}) {
+        EXPECT_TRUE(checkSampleName(good)) << good;
     }
-    EXPECT_EQ(store->sampleNames(), (std::vector<std::string>{"a", "b"}));
+    for (const std::string& bad : {std::string(),
+                                   std::string("."),
+                                   std::string(".."),
+                                   std::string(".hidden"),
+                                   std::string("-x"),
+                                   std::string("_x"),
+                                   std::string("a/b"),
+                                   std::string("a b"),
+                                   std::string("\xC3\xA4"),
+                                   std::string("a\n"),
+                                   std::string(65, 'x')}) {
+        const auto verdict = checkSampleName(bad);
+        ASSERT_FALSE(verdict) << bad;
+        EXPECT_EQ(verdict.error().kind, ErrorKind::Usage);
+    }
+}
+
+class OpenStore : public testing::Test {
+protected:
+    void SetUp() override {
+        auto opened = Store::open(folder.path());
+        ASSERT_TRUE(opened) << opened.error().message;
+        store.emplace(std::move(*opened));
+    }
+    Result<Store::Added> add(const std::string& name, const std::string& text) {
+        return store->addSample({.name = name, .rig = "R1", .dateUtc = "2026-01-01T00:00:00Z"},
+                                {.file = text, .raw = "raw of " + text});
+    }
+    static std::string read(const std::filesystem::path& file) {
+        std::ifstream in(file);
+        return {std::istreambuf_iterator<char>(in), {}};
+    }
+    test::TempFolder folder;
+    std::optional<Store> store;
+};
+
+TEST_F(OpenStore, KeepsSamplesByName) {
+    ASSERT_TRUE(store->samples()->empty());
+    ASSERT_TRUE(add("b", "B"));
+    ASSERT_TRUE(add("a", "A"));
+    const auto all = store->samples();
+    ASSERT_TRUE(all);
+    ASSERT_EQ(all->size(), 2U);
+    EXPECT_EQ((*all)[0].name, "a");
+    const auto b = store->sample("b");
+    ASSERT_TRUE(b);
+    EXPECT_EQ(b->rig, "R1");
+    EXPECT_EQ(b->dateUtc, "2026-01-01T00:00:00Z");
+    EXPECT_EQ(read(b->file), "B");
+    EXPECT_EQ(read(b->raw), "raw of B");
+    EXPECT_EQ(b->file.extension(), ".gonio");
+    EXPECT_EQ(b->raw.extension(), ".graw");
+}
+
+TEST_F(OpenStore, SampleThatIsMeasuredAgainIsKept) {
+    EXPECT_EQ(add("a", "first")->movedTo, "");
+    EXPECT_EQ(add("a", "second")->movedTo, "a.1");
+    EXPECT_EQ(add("a", "third")->movedTo, "a.2");
+    EXPECT_EQ(read(store->sample("a")->file), "third");
+    EXPECT_EQ(read(store->sample("a.1")->file), "first");
+    EXPECT_EQ(read(store->sample("a.2")->file), "second");
+}
+
+TEST_F(OpenStore, NamesWhatIsNotThere) {
+    const auto none = store->sample("none");
+    ASSERT_FALSE(none);
+    EXPECT_EQ(none.error().kind, ErrorKind::File);
+    EXPECT_NE(none.error().message.find("sample:none"), std::string::npos);
+    EXPECT_EQ(add("../x", "x").error().kind, ErrorKind::Usage);
+}
+
+TEST_F(OpenStore, NewestCalibrationOfARigAndKindCounts) {
+    const auto keep =
+        [&](const std::string& rig, const std::string& kind, const std::string& text) {
+            const auto added = store->addCalibration({.rig = rig, .kind = kind, .dateUtc = text},
+                                                     {.file = text, .raw = {}});
+            ASSERT_TRUE(added) << added.error().message;
+            EXPECT_TRUE(added->raw.empty());
+        };
+    EXPECT_FALSE(*store->newestCalibration("R1", "white"));
+    keep("R1", "white", "old");
+    keep("R1", "white", "new");
+    keep("R1", "black", "black");
+    keep("R2", "white", "other rig");
+    const auto newest = store->newestCalibration("R1", "white");
+    ASSERT_TRUE(newest && *newest);
+    EXPECT_EQ((*newest)->dateUtc, "new");
+    EXPECT_EQ(read((*newest)->file), "new");
+    EXPECT_FALSE(*store->newestCalibration("R3", "white"));
+}
+
+TEST_F(OpenStore, IsSharedByTwoThatHaveItOpen) {
+    auto other = Store::open(folder.path());
+    ASSERT_TRUE(other);
+    ASSERT_TRUE(add("a", "A"));
+    EXPECT_EQ(read(other->sample("a")->file), "A");
 }
 
 TEST(SimState, SurvivesTheStore) {

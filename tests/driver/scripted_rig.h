@@ -246,7 +246,9 @@ private:
                 format_ = decodeSetFormat(command.arguments);
                 const std::uint32_t stride =
                     *strideOf(format_.format, format_.width / format_.binning);
-                return encodeU32(stride * (format_.height / format_.binning) + frameBytesOff);
+                return encodeU32(stride *
+                                     static_cast<std::uint32_t>(format_.height / format_.binning) +
+                                 frameBytesOff);
             }
             case Op::Arm: return arm(decodeArm(command.arguments));
             case Op::Resend: resend(decodeResend(command.arguments)); return {};

@@ -3,16 +3,16 @@
 #include <gtest/gtest.h>
 
 #include "tests/formats/refusal.h"
-#include "tests/support/scratch_folder.h"
+#include "tests/support/temp_folder.h"
 
 namespace gonio::proc {
 namespace {
 
 namespace fs = std::filesystem;
 using test::refuses;
-using test::ScratchFolder;
+using test::TempFolder;
 
-std::size_t entriesIn(const ScratchFolder& folder) {
+std::size_t entriesIn(const TempFolder& folder) {
     return static_cast<std::size_t>(
         std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()));
 }
@@ -24,7 +24,7 @@ std::string everyByte() {
 }
 
 TEST(FileBytes, ReadsBackWhatItWrote) {
-    const ScratchFolder folder;
+    const TempFolder folder;
     for (const std::string& bytes : {std::string(), everyByte(), std::string(1 << 20, '\0')}) {
         ASSERT_TRUE(writeFile(folder / "file", bytes));
         const auto back = readFile(folder / "file");
@@ -35,7 +35,7 @@ TEST(FileBytes, ReadsBackWhatItWrote) {
 }
 
 TEST(FileBytes, ReadsAHeadOfAnyLength) {
-    const ScratchFolder folder;
+    const TempFolder folder;
     ASSERT_TRUE(writeFile(folder / "file", "0123456789"));
     for (const std::size_t count : {std::size_t{0}, std::size_t{9}, std::size_t{10}, SIZE_MAX}) {
         const auto head = readHead(folder / "file", count);
@@ -45,7 +45,7 @@ TEST(FileBytes, ReadsAHeadOfAnyLength) {
 }
 
 TEST(FileBytes, ReadsUpToTheLimitAndNotAByteMore) {
-    const ScratchFolder folder;
+    const TempFolder folder;
     ASSERT_TRUE(writeFile(folder / "file", "0123456789"));
     EXPECT_TRUE(readFile(folder / "file", 11));
     EXPECT_TRUE(readFile(folder / "file", 10));
@@ -53,7 +53,7 @@ TEST(FileBytes, ReadsUpToTheLimitAndNotAByteMore) {
 }
 
 TEST(FileBytes, RefusesAFileOverTheLimitWithoutReadingIt) {
-    const ScratchFolder folder;
+    const TempFolder folder;
     ASSERT_TRUE(writeFile(folder / "sparse", ""));
     fs::resize_file(folder / "sparse", std::uintmax_t{1} << 40U);  // holes: no room on the disk
     EXPECT_TRUE(refuses(readFile(folder / "sparse"), {"sparse", "1099511627776 bytes"}));
@@ -63,7 +63,7 @@ TEST(FileBytes, RefusesAFileOverTheLimitWithoutReadingIt) {
 }
 
 TEST(FileBytes, NamesWhatIsMissingOrNotAFile) {
-    const ScratchFolder folder;
+    const TempFolder folder;
     const fs::path missing = folder / "missing";
     EXPECT_TRUE(refuses(readFile(missing), {"read " + missing.string() + ": no such file"}));
     EXPECT_TRUE(refuses(readHead(missing, 1), {missing.string() + ": no such file"}));
@@ -74,7 +74,7 @@ TEST(FileBytes, NamesWhatIsMissingOrNotAFile) {
 }
 
 TEST(FileBytes, ReplacesAFile) {
-    const ScratchFolder folder;
+    const TempFolder folder;
     ASSERT_TRUE(writeFile(folder / "file", "a longer text than the second"));
     ASSERT_TRUE(writeFile(folder / "file", "short"));
     EXPECT_EQ(*readFile(folder / "file"), "short");
@@ -82,7 +82,7 @@ TEST(FileBytes, ReplacesAFile) {
 }
 
 TEST(FileBytes, NamesTheFolderThatIsNotThere) {
-    const ScratchFolder folder;
+    const TempFolder folder;
     const fs::path file = folder / "none" / "file";
     EXPECT_TRUE(refuses(writeFile(file, "x"), {"write " + file.string(), "No such file"}));
     EXPECT_EQ(entriesIn(folder), 0U);
@@ -94,7 +94,7 @@ TEST(FileBytes, LeavesNoHalfFileWhenTheDiskIsFull) {
         return;
     }
     for (const std::size_t size : {std::size_t{10}, std::size_t{1} << 20U}) {
-        const ScratchFolder folder;
+        const TempFolder folder;
         ASSERT_TRUE(writeFile(folder / "file", "as it was"));
         fs::create_symlink("/dev/full", folder / "file.part");
         EXPECT_TRUE(refuses(writeFile(folder / "file", std::string(size, 'x')),
@@ -105,11 +105,26 @@ TEST(FileBytes, LeavesNoHalfFileWhenTheDiskIsFull) {
 }
 
 TEST(FileBytes, LeavesNoHalfFileWhereAFolderStands) {
-    const ScratchFolder folder;
+    const TempFolder folder;
     fs::create_directories(folder / "taken" / "full");
     EXPECT_TRUE(refuses(writeFile(folder / "taken", "x"), {"write ", "taken: "}));
     EXPECT_TRUE(fs::exists(folder / "taken" / "full"));
     EXPECT_EQ(entriesIn(folder), 1U);
+}
+
+TEST(FileBytes, KeepsALinkAndReplacesWhatIsBehindIt) {
+    const TempFolder folder;
+    ASSERT_TRUE(writeFile(folder / "real", "old"));
+    fs::create_symlink(folder / "real", folder / "link");
+    ASSERT_TRUE(writeFile(folder / "link", "new"));
+    EXPECT_TRUE(fs::is_symlink(folder / "link"));
+    EXPECT_EQ(*readFile(folder / "real"), "new");
+    EXPECT_EQ(entriesIn(folder), 2U);
+}
+
+TEST(FileBytes, WritesIntoADeviceInsteadOfReplacingIt) {
+    ASSERT_TRUE(writeFile("/dev/null", "x"));
+    EXPECT_TRUE(fs::is_character_file("/dev/null"));
 }
 
 }  // namespace

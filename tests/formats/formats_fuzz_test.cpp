@@ -24,7 +24,7 @@ namespace {
 
 using test::refuses;
 
-int cases(int usual) { return std::getenv("GONIO_NIGHTLY") != nullptr ? 25 * usual : usual; }
+int cases(int usual) { return std::getenv("GONIO_NIGHTLY") != nullptr ? 8 * usual : usual; }
 
 std::size_t below(std::mt19937_64& random, std::size_t count) {
     return static_cast<std::size_t>(random() % count);
@@ -180,7 +180,7 @@ TEST(FormatsFuzz, RawCapturesAreRefusedOrWrittenAgain) {
     const std::string sound = *encodeGraw(test::smallCapture());
     const auto parts = *decodeExr(sound, {.largest = {4, 3}, .parts = 3});
     int accepted = 0;
-    for (int i = 0; i < cases(20'000); ++i) {
+    for (int i = 0; i < cases(5'000); ++i) {
         const std::string bytes =
             random() % 2 == 0 ? mutatedParts(parts, random) : mutatedBytes(sound, random);
         const auto capture = decodeGraw(bytes, "in");
@@ -195,7 +195,7 @@ TEST(FormatsFuzz, RawCapturesAreRefusedOrWrittenAgain) {
         ASSERT_TRUE(back) << back.error().message << ", case " << i;
         ASSERT_EQ(*encodeGraw(*back), *once) << "case " << i;
     }
-    EXPECT_GT(accepted, cases(200)) << "mutations must leave something to read";
+    EXPECT_GT(accepted, cases(50)) << "mutations must leave something to read";
 }
 
 TEST(FormatsFuzz, SniffAlwaysHasAName) {

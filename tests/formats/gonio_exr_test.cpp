@@ -13,7 +13,7 @@
 #include "proc/optics/cell_grid.h"
 #include "tests/formats/refusal.h"
 #include "tests/formats/small_files.h"
-#include "tests/support/scratch_folder.h"
+#include "tests/support/temp_folder.h"
 
 namespace gonio::proc {
 namespace {
@@ -318,7 +318,7 @@ TEST(GonioFile, RefusesAFileCutAnywhere) {
 }
 
 TEST(GonioFile, WritesAndReadsFilesAndNamesThemInErrors) {
-    const test::ScratchFolder folder;
+    const test::TempFolder folder;
     ASSERT_TRUE(writeGonio(folder / "a.gonio", smallSample()));
     const auto back = readGonio(folder / "a.gonio");
     ASSERT_TRUE(back);

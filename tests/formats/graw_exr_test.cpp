@@ -10,7 +10,7 @@
 #include "proc/formats/file_bytes.h"
 #include "tests/formats/refusal.h"
 #include "tests/formats/small_files.h"
-#include "tests/support/scratch_folder.h"
+#include "tests/support/temp_folder.h"
 
 namespace gonio::proc {
 namespace {
@@ -208,7 +208,7 @@ TEST(GrawFile, RefusesAFileCutAtAnyByte) {
 }
 
 TEST(GrawFile, WritesAndReadsFilesAndNamesThemInErrors) {
-    const test::ScratchFolder folder;
+    const test::TempFolder folder;
     ASSERT_TRUE(writeGraw(folder / "a.graw", smallCapture()));
     const auto back = readGraw(folder / "a.graw");
     ASSERT_TRUE(back);

@@ -11,7 +11,7 @@
 #include "proc/optics/cell_grid.h"
 #include "tests/formats/refusal.h"
 #include "tests/formats/small_files.h"
-#include "tests/support/scratch_folder.h"
+#include "tests/support/temp_folder.h"
 
 namespace gonio::proc {
 namespace {
@@ -211,7 +211,7 @@ TEST(PointsCsv, SurvivesATextCutAtAnyByte) {
 }
 
 TEST(PointsCsv, NamesTheFileThatItCannotRead) {
-    const test::ScratchFolder folder;
+    const test::TempFolder folder;
     EXPECT_TRUE(refuses(readPoints(folder / "none.csv"), {"none.csv: no such file"}));
     ASSERT_TRUE(writeFile(folder / "in.csv", smallPoints()));
     const auto points = readPoints(folder / "in.csv");

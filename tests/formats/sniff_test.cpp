@@ -12,7 +12,7 @@
 #include "tests/formats/refusal.h"
 #include "tests/formats/small_files.h"
 #include "tests/support/data_file.h"
-#include "tests/support/scratch_folder.h"
+#include "tests/support/temp_folder.h"
 
 namespace gonio::proc {
 namespace {
@@ -77,7 +77,7 @@ TEST(Sniff, KnowsCsvBehindAByteOrderMark) {
 TEST(Sniff, TakesTheWordOfTheNameForAnExrWhoseSchemaIsOutOfSight) {
     SampleSet set = test::smallSample();
     set.info.budgetJson = std::string(100'000, ' ');
-    const test::ScratchFolder folder;
+    const test::TempFolder folder;
     ASSERT_TRUE(writeGonio(folder / "a.gonio", set));
     ASSERT_TRUE(writeGonio(folder / "a.exr", set));
     EXPECT_EQ(*sniffFile(folder / "a.gonio"), FileKind::Gonio);
@@ -111,7 +111,7 @@ TEST(Sniff, NamesEveryKindDifferently) {
 }
 
 TEST(Sniff, NamesTheFileThatItCannotRead) {
-    const test::ScratchFolder folder;
+    const test::TempFolder folder;
     EXPECT_TRUE(refuses(sniffFile(folder / "none.bsdf"), {"none.bsdf: no such file"}));
     EXPECT_TRUE(refuses(sniffFile(folder.path()), {"not a file"}));
 }
@@ -135,7 +135,7 @@ TEST(OpenBrdf, AnswersFromAZemaxFileAtItsNodes) {
 }
 
 TEST(OpenBrdf, AnswersFromASampleWhateverItsName) {
-    const test::ScratchFolder folder;
+    const test::TempFolder folder;
     SampleSet set = test::sampleSet([](Radians, const Direction&) { return 0.25; });
     ASSERT_TRUE(writeGonio(folder / "sample.exr", set));
     const auto opened = openBrdf(folder / "sample.exr");
@@ -148,7 +148,7 @@ TEST(OpenBrdf, AnswersFromASampleWhateverItsName) {
 }
 
 TEST(OpenBrdf, NamesTheKindOfWhatItCannotAnswerFrom) {
-    const test::ScratchFolder folder;
+    const test::TempFolder folder;
     const auto refused = [&](const std::string& name,
                              std::string_view bytes,
                              std::string_view kind) {
@@ -165,7 +165,7 @@ TEST(OpenBrdf, NamesTheKindOfWhatItCannotAnswerFrom) {
 }
 
 TEST(OpenBrdf, NamesTheFileThatIsDamagedOrHasNoFOfTheBands) {
-    const test::ScratchFolder folder;
+    const test::TempFolder folder;
     EXPECT_TRUE(refuses(openBrdf(folder / "none.bsdf"), {"none.bsdf: no such file"}));
     EXPECT_TRUE(refuses(openBrdf(folder.path()), {"not a file"}));
     ASSERT_TRUE(writeFile(folder / "cut.bsdf", test::smallZemax().substr(0, 300)));

@@ -12,7 +12,7 @@
 #include "tests/formats/refusal.h"
 #include "tests/formats/small_files.h"
 #include "tests/support/data_file.h"
-#include "tests/support/scratch_folder.h"
+#include "tests/support/temp_folder.h"
 
 namespace gonio::proc {
 namespace {
@@ -414,7 +414,7 @@ TEST(Zemax, WritesWhatIsNotFiniteAsZeroAndCountsIt) {
 }
 
 TEST(Zemax, NamesTheFileThatItCannotRead) {
-    const test::ScratchFolder folder;
+    const test::TempFolder folder;
     EXPECT_TRUE(refuses(readZemax(folder / "none.bsdf"), {"none.bsdf", "no such file"}));
     EXPECT_TRUE(refuses(readZemax(folder.path()), {folder.path().string()}));
     ASSERT_TRUE(writeFile(folder / "bad.bsdf", "\x01\xffz\n"));

@@ -20,7 +20,7 @@ TEST(ReferenceErrors, StratifiedRunsTakeEachQuantileOnce) {
     for (std::uint64_t component : {0UL, 1UL, 2UL, 777UL}) {
         std::vector<double> seen;
         for (int run = 0; run < kStrata; ++run) {
-            seen.push_back(ReferenceErrors::stratified(run, 5).deviate(component));
+            seen.push_back(ReferenceErrors::stratified(run).deviate(component));
         }
         std::sort(seen.begin(), seen.end());
         for (int k = 0; k < kStrata; ++k) {
@@ -33,7 +33,7 @@ TEST(ReferenceErrors, StratifiedRunsTakeEachQuantileOnce) {
 TEST(ReferenceErrors, ComponentsHaveOrdersOfTheirOwn) {
     int same = 0;
     for (int run = 0; run < kStrata; ++run) {
-        const ReferenceErrors errors = ReferenceErrors::stratified(run, 5);
+        const ReferenceErrors errors = ReferenceErrors::stratified(run);
         same += errors.deviate(0) == errors.deviate(1) ? 1 : 0;
     }
     EXPECT_LT(same, 8);
@@ -56,9 +56,17 @@ TEST(ReferenceErrors, FieldHasUnitVarianceEverywhere) {
     }
 }
 
+TEST(ReferenceErrors, StrataDoNotHangOnTheNoisesSeed) {
+    const auto deviate = [](const char* text, std::uint64_t seed) {
+        return ReferenceErrors::parse(text, seed)->deviate(0);
+    };
+    EXPECT_EQ(deviate("stratum:3", 1), deviate("stratum:3", 2));
+    EXPECT_NE(deviate("random", 1), deviate("random", 2));
+}
+
 TEST(WhiteErrors, MatchesReference) {
     for (const ReferenceErrors& errors :
-         {ReferenceErrors(), ReferenceErrors::random(11), ReferenceErrors::stratified(4, 11)}) {
+         {ReferenceErrors(), ReferenceErrors::random(11), ReferenceErrors::stratified(4)}) {
         for (int led : {0, 3}) {
             const WhiteErrors table = errors.white(led);
             for (double theta = 0; theta <= 90; theta += 4.3) {

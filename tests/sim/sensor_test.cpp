@@ -83,6 +83,21 @@ TEST(Sensor, ResponsesScatterBySevenTenthsOfAPerCent) {
     EXPECT_NEAR(std::sqrt(squares / kPixels), 0.007, 0.0002);
 }
 
+TEST(Sensor, DarkCurrentDoublesEachSevenKelvin) {
+    constexpr View kPart{.size = {256, 256}};
+    constexpr Nanoseconds kExposure(20'000'000'000);
+    const auto meanDn = [&](double celsius) {
+        const auto frame =
+            Sensor("SIM-0001", celsius).expose(nullptr, 0, kExposure, kPart, {1, 1, 0}, 1);
+        double sum = 0;
+        for (const std::uint16_t dn : frame.pixels()) sum += dn - kBlackLevel;
+        return sum / static_cast<double>(frame.pixels().size());
+    };
+    // 60 and 120 electrons at 2.6 e-/DN; the mean of 65,536 pixels is known to 0.02 DN.
+    EXPECT_NEAR(meanDn(25), 60 / 2.6, 0.1);
+    EXPECT_NEAR(meanDn(32), 120 / 2.6, 0.1);
+}
+
 TEST(Sensor, PixelsKeepTheirResponseInEveryView) {
     const Sensor sensor("SIM-0001");
     constexpr Size kWhole = kSensorSize;

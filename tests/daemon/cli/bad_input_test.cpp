@@ -1,5 +1,7 @@
 // Bad input gets one clear line, the right exit code, in under a second and 100 MiB.
 
+#include <sys/file.h>
+
 #include <algorithm>
 
 #include "tests/daemon/cli/program.h"
@@ -9,7 +11,7 @@ namespace {
 
 using test::Ran;
 
-constexpr int kUsage = 2, kFile = 6, kQuality = 7;
+constexpr int kUsage = 2, kBusy = 4, kFile = 6, kQuality = 7;
 
 constexpr double kMebibytes = 100;
 constexpr double kSeconds = 1;
@@ -118,7 +120,7 @@ TEST_F(BadInput, WrongCommandLinesAreUsageErrors) {
     expectRefused(gonio({"info", kRealFile, "--colour"}), kUsage, {"--colour"});
     expectRefused(gonio({"measure", "x", "--effort", "heroic"}), kUsage, {"heroic", "draft"});
     expectRefused(gonio({"measure", "../x"}), kUsage, {"../x"});
-    expectRefused(gonio({"info", "sample:../../etc/passwd"}), kUsage, {"sample name"});
+    expectRefused(gonio({"info", "sample:../../etc/passwd"}), kFile, {"no sample of this name"});
     expectRefused(gonio({"sim", "place", "white", "--systematic", "some"}), kUsage, {"some"});
 }
 
@@ -140,8 +142,40 @@ TEST_F(BadInput, OutputThatCannotBeWrittenIsNamed) {
 TEST_F(BadInput, MeasuringBeforeCalibratingSaysWhatToRun) {
     ASSERT_EQ(gonio({"sim", "place", "model:lambert,albedo=0.5", "-q"}).exitCode, 0);
     expectRefused(gonio({"measure", "x"}), kQuality, {"gonio calibrate mirror"});
-    expectRefused(gonio({"calibrate", "white"}), kQuality, {"gonio calibrate mirror"});
+    expectRefused(gonio({"calibrate", "white"}), kQuality, {"gonio sim place white"});
+    expectRefused(gonio({"calibrate", "black"}), kQuality, {"gonio sim place black"});
     expectRefused(gonio({"calibrate", "mirror"}), kQuality, {"gonio sim place mirror"});
+}
+
+TEST_F(BadInput, PlacementsThatMakeNoSenseAreRefusedBeforeTheyAreKept) {
+    for (const std::string tilt : {"nan", "inf", "-90"}) {
+        expectRefused(gonio({"sim", "place", "mirror", "--tilt=" + tilt}), kUsage, {"tilt"});
+    }
+    expectRefused(gonio({"sim", "place", "white", "--tilt", "5"}), kUsage, {"only the mirror"});
+    expectRefused(gonio({"sim", "place", "white", "--seed=-1"}), kUsage, {"--seed"});
+    for (const std::string serial : {"", "a b", "0123456789012345678901234567890123"}) {
+        expectRefused(gonio({"sim", "place", "white", "--serial=" + serial}), kUsage, {"serial"});
+    }
+    EXPECT_FALSE(std::filesystem::exists(gonio / "store/sim.json"));
+}
+
+TEST_F(BadInput, CommentThatIsNoUtf8IsShownAllTheSame) {
+    const std::string latin = file("latin.bsdf", "# 20 \xB0 C\n" + test::textOf(kRealFile));
+    const Ran plain = gonio({"info", latin});
+    EXPECT_EQ(plain.exitCode, 0) << plain.err;
+    EXPECT_EQ(gonio({"info", latin, "--json"}).exitCode, 0);
+    EXPECT_EQ(gonio({"convert", latin, (gonio / "out.bsdf").string()}).exitCode, 0);
+    EXPECT_NE(test::textOf(gonio / "out.bsdf").find("20 \xB0 C"), std::string::npos);
+}
+
+TEST_F(BadInput, RigOfAStoreIsForOneProcess) {
+    ASSERT_EQ(gonio({"sim", "place", "white", "-q"}).exitCode, 0);
+    const int held = ::open((gonio / "store/rig.lock").c_str(), O_RDWR);
+    ASSERT_EQ(::flock(held, LOCK_EX), 0);
+    expectRefused(gonio({"sim", "place", "black"}), kBusy, {"another gonio"});
+    expectRefused(gonio({"measure", "x"}), kBusy, {"another gonio"});
+    ::close(held);
+    EXPECT_EQ(gonio({"sim", "place", "black", "-q"}).exitCode, 0);
 }
 
 TEST_F(BadInput, BrokenStoreIsNamed) {
@@ -152,9 +186,8 @@ TEST_F(BadInput, BrokenStoreIsNamed) {
 
 TEST_F(BadInput, BrokenProfileIsNamedWithItsKey) {
     const std::string profile = file("rig.toml", "name = \"x\"\n[sensor]\nelectrons_per_dn = -1\n");
-    expectRefused(gonio({"measure", "x", "--profile", profile}),
-                  kFile,
-                  {profile, "sensor.electrons_per_dn"});
+    expectRefused(
+        gonio({"measure", "x", "--profile", profile}), kFile, {profile, "sensor.electrons_per_dn"});
     const std::string torn = file("torn.toml", "name = \n");
     expectRefused(gonio({"measure", "x", "--profile", torn}), kFile, {torn});
 }

@@ -44,8 +44,13 @@ public:
         // freedom, so that the spread is far below what is allowed for the noise model.
         EXPECT_NEAR(white["chi_square_per_freedom"], 1, 0.01);
     }
-    /// Measures all samples; the score of each.
-    [[nodiscard]] Json measureAll() const {
+    /// Measures all samples: the score of each, and what `measure` said.
+    struct Measured {
+        Json scores;
+        std::vector<Json> runs;
+    };
+    [[nodiscard]] Measured measureAll() const {
+        Measured all;
         std::vector<std::string> score{"sim", "score"};
         for (std::size_t i = 0; i < kSamples.size(); ++i) {
             const std::string name = "s" + std::to_string(i);
@@ -54,8 +59,10 @@ public:
             EXPECT_EQ(measured["schema"], "gonio/measure/1");
             EXPECT_NEAR(measured["chi_square_per_freedom"], 1, 0.01);
             score.push_back(measured["file"]);
+            all.runs.push_back(measured);
         }
-        return (*this)(score)["samples"];
+        all.scores = (*this)(score)["samples"];
+        return all;
     }
 
     Program program;
@@ -81,13 +88,15 @@ void expectAccurate(const Json& sample) {
     EXPECT_GT(sample["cells"], 40'000) << sample;
 }
 
-/// A measured sample can be looked at, evaluated, exported and plotted, and says the same each time.
-void expectUsable(const Bench& gonio) {
+/// A measured sample can be looked at, evaluated, exported and plotted, and says the same each
+/// time.
+/// `measured` is what `measure` said of it.
+void expectUsable(const Bench& gonio, const Json& measured) {
     const Json info = gonio({"info", "sample:s1"});
     EXPECT_EQ(info["schema"], "gonio/info/1");
     ASSERT_EQ(info["leds"].size(), 4U);
-    // At normal incidence Oren-Nayar is (albedo / pi) A, A = 1 - sigma^2 / (2 sigma^2 + 0.66); within
-    // 75 degrees lie sin^2(75) of its light. 0.2 % for noise and lens.
+    // At normal incidence Oren-Nayar is (albedo / pi) A, A = 1 - sigma^2 / (2 sigma^2 + 0.66);
+    // within 75 degrees lie sin^2(75) of its light. 0.2 % for noise and lens.
     const double expected = 0.8 * (1 - 0.09 / 0.84) * std::pow(std::sin(75 * M_PI / 180), 2);
     EXPECT_NEAR(
         info["leds"][0]["g"]["reflected_fraction_within_measured"], expected, 0.002 * expected);
@@ -109,7 +118,12 @@ void expectUsable(const Bench& gonio) {
 
     const std::string copy = gonio.program / "copy.gonio";
     gonio({"convert", "sample:s1", copy});
-    EXPECT_EQ(test::textOf(copy), test::textOf(gonio.program / "store/samples/s1.gonio"));
+    EXPECT_EQ(test::textOf(copy), test::textOf(measured["file"].get<std::string>()));
+
+    const Json raw = gonio({"info", measured["raw"]});
+    ASSERT_EQ(raw["states"].size(), 12U);
+    EXPECT_EQ(raw["about"]["name"], "s1");
+    EXPECT_GE(raw["states"][0]["bracket"].size(), 2U);
 
     const Json plots = gonio({"plot", "sample:s1", "-o", gonio.program / "plots"});
     ASSERT_EQ(plots["files"].size(), 2U);
@@ -121,9 +135,9 @@ void expectUsable(const Bench& gonio) {
 TEST(MeasureRun, WithoutSystematicErrorsNoiseExplainsTheRest) {
     const Bench gonio;
     gonio.calibrate("none", 1);
-    const Json samples = gonio.measureAll();
+    const Bench::Measured all = gonio.measureAll();
     double inside = 0, cells = 0;
-    for (const Json& sample : samples) {
+    for (const Json& sample : all.scores) {
         expectAccurate(sample);
         const double count = sample["cells"];
         inside += count * sample["within_2u_random"].get<double>();
@@ -131,7 +145,7 @@ TEST(MeasureRun, WithoutSystematicErrorsNoiseExplainsTheRest) {
     }
     EXPECT_GE(inside / cells, 0.94);
     EXPECT_LE(inside / cells, 0.97);
-    expectUsable(gonio);
+    expectUsable(gonio, all.runs[1]);
 }
 
 TEST(MeasureRun, SameSeedGivesTheSameBytes) {
@@ -160,7 +174,7 @@ TEST(CoverageRun, TwoStandardUncertaintiesHoldTheTruthOverStratifiedRuns) {
     for (int run = 0; run < kRuns; ++run) {
         const Bench gonio;
         gonio.calibrate("stratum:" + std::to_string(run), 100 + run);
-        const Json samples = gonio.measureAll();
+        const Json samples = gonio.measureAll().scores;
         double inside = 0, cells = 0;
         std::string row = "| " + std::to_string(run);
         for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -173,12 +187,13 @@ TEST(CoverageRun, TwoStandardUncertaintiesHoldTheTruthOverStratifiedRuns) {
             row += " | " + std::to_string(100 * share).substr(0, 5);
         }
         sums.back() += inside / cells / kRuns;
-        table += row + " | " + std::to_string(100 * inside / cells).substr(0, 5) + " |\n";
+        row += " | " + std::to_string(100 * inside / cells).substr(0, 5) + " |\n";
+        std::cout << row << std::flush;
+        table += row;
     }
     table += "| mean";
     for (const double mean : sums) table += " | " + std::to_string(100 * mean).substr(0, 5);
     table += " |\n";
-    std::cout << table;
     if (const char* file = std::getenv("GONIO_COVERAGE_TABLE")) test::writeText(file, table);
     EXPECT_GE(sums.back(), 0.93);
     EXPECT_LE(sums.back(), 0.98);

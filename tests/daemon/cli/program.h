@@ -38,7 +38,8 @@ inline void writeText(const std::filesystem::path& file, const std::string& text
 class Program {
 public:
     [[nodiscard]] Ran operator()(std::vector<std::string> arguments) const {
-        arguments.insert(arguments.begin(), {GONIO_PROGRAM, "--store", (folder_ / "store").string()});
+        arguments.insert(arguments.begin(),
+                         {GONIO_PROGRAM, "--store", (folder_ / "store").string()});
         std::vector<char*> argv;
         for (std::string& argument : arguments) argv.push_back(argument.data());
         argv.push_back(nullptr);

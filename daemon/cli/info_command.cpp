@@ -1,0 +1,168 @@
+// gonio info: what a file holds, for people and for machines.
+
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "daemon/cli/commands.h"
+#include "daemon/material.h"
+#include "proc/formats/file_degrees.h"
+#include "proc/formats/graw_exr.h"
+#include "proc/optics/cell_grid.h"
+
+namespace gonio::daemon {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json degreesOf(const std::vector<Radians>& angles) {
+    Json list = Json::array();
+    for (Radians angle : angles) list.push_back(proc::fileDegrees(angle));
+    return list;
+}
+
+Json sampleJson(const proc::SampleSet& sample) {
+    Json json;
+    const proc::SampleInfo& info = sample.info;
+    json["name"] = info.name;
+    json["rig"] = info.rigSerial;
+    json["calibration"] = info.calibrationId;
+    json["date"] = info.dateUtc;
+    json["effort"] = info.effort;
+    json["notes"] = info.operatorNotes;
+    json["software"] = info.softwareVersion;
+    json["reference"] = info.referenceCertificate;
+    json["profile_hash"] = info.profileHash;
+    json["session"] = info.session;
+    json["qc"] = info.qcVerdicts;
+    json["interruptions"] = info.interruptions;
+    json["requested_uncertainty"] =
+        info.requestedUncertainty ? Json(*info.requestedUncertainty) : Json();
+    json["achieved_uncertainty"] =
+        info.achievedUncertainty ? Json(*info.achievedUncertainty) : Json();
+    json["wavelengths_nm"] = kBandNanometres;
+    json["extra"] = info.extra;
+    json["rig_seconds"] = info.rigSeconds;
+    json["compute_seconds"] = info.computeSeconds;
+    if (!info.truthSpec.empty()) json["truth"] = info.truthSpec;
+    if (!info.budgetJson.empty()) json["budget"] = Json::parse(info.budgetJson, nullptr, false);
+    Json leds = Json::array();
+    for (const proc::LedTable& led : sample.leds) {
+        Json entry;
+        entry["theta_i_deg"] = proc::fileDegrees(led.incidence);
+        for (Band b : kBands) {
+            const proc::CellSamples& cells = led.bands[index(b)];
+            int measured = 0;
+            double solidAngle = 0, reflected = 0;
+            for (std::size_t cell = 0; cell < cells.size(); ++cell) {
+                if (!cells.present(cell)) continue;
+                ++measured;
+                const double omega = proc::CellGrid::solidAngle(cell);
+                solidAngle += omega;
+                reflected += cells.f[cell] * proc::CellGrid::centre(cell).z() * omega;
+            }
+            entry[std::string(letter(b))] = {{"measured_cells", measured},
+                                             {"solid_angle_sr", solidAngle},
+                                             {"reflected_fraction_within_measured", reflected}};
+        }
+        leds.push_back(entry);
+    }
+    json["leds"] = leds;
+    return json;
+}
+
+Json tableJson(const proc::SpecularTable& table) {
+    Json json;
+    json["incidences_deg"] = table.incidenceDeg;
+    json["rotations_deg"] = table.rotationDeg;
+    json["azimuths"] = table.azimuthDeg.size();
+    json["radials"] = table.radialDeg.size();
+    json["plane_symmetrical"] = table.symmetry == proc::TableSymmetry::PlaneSymmetrical;
+    json["planes"] = table.planes.size();
+    Json tis = Json::array();
+    for (const proc::TablePlane& plane : table.planes) tis.push_back(plane.tis);
+    json["tis_as_written"] = tis;
+    json["comments"] = table.comments;
+    return json;
+}
+
+/// A nested document as indented lines, for people.
+void printPlain(const Json& json, const std::string& indent) {
+    for (const auto& [key, value] : json.items()) {
+        if (value.is_object() ||
+            (value.is_array() && !value.empty() && value.front().is_structured())) {
+            std::cout << indent << key << ":\n";
+            printPlain(value, indent + "  ");
+        } else {
+            std::cout << indent << key << ": "
+                      << (value.is_string()
+                              ? value.get<std::string>()
+                              : value.dump(-1, ' ', false, Json::error_handler_t::replace))
+                      << "\n";
+        }
+    }
+}
+
+Json rawJson(const proc::RawCapture& capture) {
+    Json json = {{"kind", "graw"}, {"about", capture.info}};
+    Json states = Json::array();
+    for (const proc::RawState& state : capture.states) {
+        const proc::MergedState& merged = state.merged;
+        Json bracket = Json::array();
+        for (const proc::RawExposure& exposure : state.bracket) {
+            Json celsius = Json::array();
+            for (const auto& c : exposure.celsius) celsius.push_back(c ? Json(*c) : Json());
+            bracket.push_back(
+                {{"exposure_us", static_cast<double>(exposure.granted.count()) * 1e-3},
+                 {"level", exposure.level},
+                 {"frames", exposure.frames},
+                 {"black_level", exposure.blackLevel},
+                 {"celsius", celsius}});
+        }
+        states.push_back(
+            {{"led", merged.led},
+             {"band", std::string(letter(merged.band))},
+             {"width", merged.radiance.width()},
+             {"height", merged.radiance.height()},
+             {"pixels_saturated_in_every_frame", merged.allSaturatedPixels},
+             {"chi_square_per_freedom",
+              merged.freedom > 0 ? Json(merged.chiSquare / static_cast<double>(merged.freedom))
+                                 : Json()},
+             {"bracket", bracket}});
+    }
+    json["states"] = states;
+    return json;
+}
+
+Result<Json> infoOf(const CommonOptions& common, const std::string& file) {
+    if (std::filesystem::path(file).extension() == ".graw") {
+        const Result<proc::RawCapture> capture = proc::readGraw(file);
+        if (!capture) return capture.error();
+        return rawJson(*capture);
+    }
+    const Result<Material> material = openMaterial(file, common.store);
+    if (!material) return material.error();
+    Json json = {{"kind", material->kind}};
+    json["incidences_deg"] = degreesOf(material->incidences());
+    json["bands"] = material->scatterer->bandCount() == BandCount::One ? 1 : 3;
+    if (material->sample != nullptr) json.update(sampleJson(*material->sample));
+    if (material->table != nullptr) json.update(tableJson(*material->table));
+    return json;
+}
+
+}  // namespace
+
+Result<void> info(const CommonOptions& common, const std::string& file) {
+    const Result<Json> facts = infoOf(common, file);
+    if (!facts) return facts.error();
+    if (common.json) {
+        Json json = {{"schema", "gonio/info/1"}, {"file", file}};
+        json.update(*facts);
+        std::cout << json.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
+    } else {
+        std::cout << "file: " << file << "\n";
+        printPlain(*facts, "");
+    }
+    return {};
+}
+
+}  // namespace gonio::daemon

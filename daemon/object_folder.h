@@ -1,0 +1,29 @@
+#pragma once
+// Files named by their content, written so that a name never stands for half a file: into a
+// temporary, fdatasync, rename, fsync of the folder. When put() has returned, the bytes survive
+// kill -9 and power loss; when it has not, there is nothing under the name, or all of it. The same
+// bytes are kept once.
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "proc/core/result.h"
+
+namespace gonio::daemon {
+
+class ObjectFolder {
+public:
+    /// Made when it is not there; what a run that died left half written is taken away.
+    [[nodiscard]] static Result<ObjectFolder> open(const std::filesystem::path& folder);
+
+    /// The name: 64 hexadecimal digits and the extension (".gonio").
+    [[nodiscard]] Result<std::string> put(std::string_view bytes, std::string_view extension) const;
+    [[nodiscard]] std::filesystem::path pathOf(const std::string& name) const;
+
+private:
+    explicit ObjectFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
+    std::filesystem::path folder_;
+};
+
+}  // namespace gonio::daemon
