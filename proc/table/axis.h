@@ -1,7 +1,7 @@
 #pragma once
 // Where a number lies on an ascending axis: between which two nodes, and how far. The coordinate is
-// in the axis's own unit (degrees in files). Within 1e-9 of a node it is that node: angles that went
-// through radians and back still find it.
+// in the axis's own unit (degrees in files). Within 1e-9 of a node it is that node: angles that
+// went through radians and back still find it.
 
 #include <cstddef>
 #include <optional>

@@ -67,7 +67,9 @@ void addCells(Blend& blend, LedShare share, const Direction& wo) {
     // Below the first row's centre the other side of the pole is the neighbour.
     const bool pole = low < 0;
     const int last = CellGrid::kRows - 1;
-    addRow(blend, {share.led, share.weight * (1 - fraction)}, pole ? 0 : std::min(low, last),
+    addRow(blend,
+           {share.led, share.weight * (1 - fraction)},
+           pole ? 0 : std::min(low, last),
            pole ? phi + Radians(kPi) : phi);
     addRow(blend, {share.led, share.weight * fraction}, std::min(low + 1, last), phi);
 }
@@ -139,7 +141,8 @@ Answer SampleLookup::answer(const LightView& pair) const {
     const auto place = placeOn(incidenceDeg_, atDeg);
     if (!place) return Answer::none({}, Source::Interpolated);
     const SpecularRelative at = toSpecularRelative(pair);
-    for (const LedShare share : {LedShare{place->low, 1 - place->t}, LedShare{place->high, place->t}}) {
+    for (const LedShare share :
+         {LedShare{place->low, 1 - place->t}, LedShare{place->high, place->t}}) {
         const Direction wi = Direction::fromSpherical(set_.leds[share.led].incidence, Radians(0));
         const Direction wo = fromSpecularRelative(wi, at);
         if (!wo.aboveHorizon()) return Answer::none({}, Source::Interpolated);

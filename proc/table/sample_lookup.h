@@ -2,8 +2,8 @@
 // Answers from a measured sample, isotropic: the light's azimuth is turned to 0.
 //
 // Within 0.5 degrees of an LED's incidence: that LED's cells, bilinear between cell centres (two
-// rows, each linear in phi, across the pole at the normal). Between two LEDs: linear in incidence at
-// equal specular-relative coordinates. Beyond the first or last LED by more than 0.5 degrees: no
+// rows, each linear in phi, across the pole at the normal). Between two LEDs: linear in incidence
+// at equal specular-relative coordinates. Beyond the first or last LED by more than 0.5 degrees: no
 // answer. A missing cell that is needed: no answer in that band, with the cells' flags.
 //
 // At a cell centre of an LED: source `measured`; else `interpolated`. u_random adds as independent
