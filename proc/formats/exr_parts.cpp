@@ -136,7 +136,7 @@ std::string encode(std::span<const ExrPart> parts) {
 
 /// The pixels of all parts may not be more than deflate can hold in the file (1032 : 1), whatever
 /// the headers promise: known before the library or we make room for any.
-void checkPromise(const Imf::MultiPartInputFile& file, std::size_t fileBytes) {
+void checkPromise(const Imf::MultiPartInputFile& file, std::size_t fileBytes, std::size_t limit) {
     constexpr std::size_t kMostRatio = 1032;
     std::size_t promised = 0;
     for (int i = 0; i < file.parts(); ++i) {
@@ -149,6 +149,10 @@ void checkPromise(const Imf::MultiPartInputFile& file, std::size_t fileBytes) {
         for (auto it = header.channels().begin(); it != header.channels().end(); ++it) {
             promised += size.pixels() * sizeof(float);
         }
+    }
+    if (promised > limit) {
+        throw std::runtime_error(std::to_string(promised) + " bytes of pixels, at most " +
+                                 std::to_string(limit) + " are read");
     }
     if (promised / kMostRatio > fileBytes) {
         throw std::runtime_error("more pixels than the file can hold");
@@ -179,10 +183,10 @@ ExrPart emptyPart(const Imf::Header& header) {
     return part;
 }
 
-std::vector<ExrPart> decode(std::string_view bytes) {
+std::vector<ExrPart> decode(std::string_view bytes, std::size_t limit) {
     MemoryIn in(bytes);
     Imf::MultiPartInputFile file(in, 0, false);
-    checkPromise(file, bytes.size());
+    checkPromise(file, bytes.size(), limit);
     std::vector<ExrPart> parts;
     for (int i = 0; i < file.parts(); ++i) {
         Imf::InputPart input(file, i);
@@ -226,7 +230,7 @@ Result<std::string> encodeExr(std::span<const ExrPart> parts) {
 Result<std::vector<ExrPart>> decodeExr(std::string_view bytes, ExrLimits limits) {
     if (auto walked = walkExrHeaders(bytes, limits); !walked) return walked.error();
     try {
-        return decode(bytes);
+        return decode(bytes, limits.bytes);
     } catch (const std::exception& thrown) {
         return failed("damaged: " + reason(thrown));
     }

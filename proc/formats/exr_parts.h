@@ -8,6 +8,7 @@
 // throws becomes an Error.
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <span>
 #include <string>
@@ -30,6 +31,7 @@ struct ExrPart {
 struct ExrLimits {
     Size largest;
     std::size_t parts = 0;
+    std::size_t bytes = std::numeric_limits<std::size_t>::max();  ///< of all channels, decoded
 };
 
 /// At least one part; names differ; every channel has size.pixels() values.

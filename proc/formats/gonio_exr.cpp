@@ -16,7 +16,8 @@ namespace gonio::proc {
 namespace {
 
 constexpr Size kPicture{360, CellGrid::kRows};
-constexpr std::size_t kMostLeds = 256;
+constexpr std::size_t kMostLeds = 8;                        // that a rig can have
+constexpr std::size_t kMostBytes = std::size_t{32} << 20U;  // 24 parts of 6 channels are 19 MB
 
 /// The cell that a pixel repeats: the one that holds the middle of its column.
 std::size_t cellOf(int x, int y) {
@@ -297,7 +298,8 @@ Result<std::string> encodeGonio(const SampleSet& set) {
 }
 
 Result<SampleSet> decodeGonio(std::string_view bytes, std::string_view name) {
-    const auto parts = decodeExr(bytes, {.largest = kPicture, .parts = 3 * kMostLeds});
+    const auto parts =
+        decodeExr(bytes, {.largest = kPicture, .parts = 3 * kMostLeds, .bytes = kMostBytes});
     if (!parts) return parts.error().in("gonio: " + std::string(name));
     return Decoder(name).read(*parts);
 }

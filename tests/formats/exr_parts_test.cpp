@@ -251,5 +251,17 @@ TEST(ExrParts, ReadHalvesAsFloatsAndRefuseOtherKindsOfRealFiles) {
     }
 }
 
+TEST(ExrParts, RefusesMorePixelsThanItWasToldToRead) {
+    const auto all = decodeExr(smallFile(), {.largest = {4, 3}, .parts = 2});
+    ASSERT_TRUE(all);
+    std::size_t bytes = 0;
+    for (const ExrPart& part : *all) {
+        bytes += (part.floats.size() + part.counts.size()) * part.size.pixels() * sizeof(float);
+    }
+    EXPECT_TRUE(decodeExr(smallFile(), {.largest = {4, 3}, .parts = 2, .bytes = bytes}));
+    EXPECT_TRUE(refuses(decodeExr(smallFile(), {.largest = {4, 3}, .parts = 2, .bytes = bytes - 1}),
+                        {"exr: ", std::to_string(bytes) + " bytes of pixels"}));
+}
+
 }  // namespace
 }  // namespace gonio::proc

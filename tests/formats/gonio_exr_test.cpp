@@ -334,5 +334,19 @@ TEST(GonioFile, WritesAndReadsFilesAndNamesThemInErrors) {
     EXPECT_TRUE(readGonio(folder / "a.gonio"));
 }
 
+TEST(GonioFile, RefusesASmallFileThatWouldFillTheMemory) {
+    // One part with 300 channels of zeros: some 100 kB that unfold to 39 MB.
+    ExrPart part;
+    part.name = "led0.r";
+    part.size = {360, 90};
+    for (int i = 0; i < 300; ++i) {
+        part.floats["c" + std::to_string(i)].resize(part.size.pixels());
+    }
+    const auto bytes = encodeExr(std::span(&part, 1));
+    ASSERT_TRUE(bytes);
+    EXPECT_LT(bytes->size(), 1'000'000U);
+    EXPECT_TRUE(refuses(decodeGonio(*bytes, "bomb.gonio"), {"bomb.gonio", "bytes of pixels"}));
+}
+
 }  // namespace
 }  // namespace gonio::proc
