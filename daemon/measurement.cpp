@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "proc/core/median.h"
 #include "proc/core/number_text.h"
 #include "proc/optics/spot.h"
 #include "proc/radiance/merge.h"
@@ -48,13 +49,6 @@ Result<proc::DarkLibrary> takeDarks(const Bench& bench, Sequencer& sequencer, in
 
 std::string stateName(State state) {
     return "LED " + std::to_string(state.led) + " " + std::string(letter(state.band));
-}
-
-double median(std::vector<double> values) {
-    if (values.empty()) return std::nan("");
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
 }
 
 double medianSignal(const proc::CellSignal& signal) {

@@ -5,6 +5,7 @@
 
 #include "driver/protocol/crc.h"
 #include "driver/protocol/pixels.h"
+#include "sim/frame_chunks.h"
 #include "sim/random.h"
 
 namespace gonio::sim {
@@ -13,7 +14,6 @@ using namespace driver;  // the wire's words
 
 namespace {
 
-constexpr std::uint32_t kMaxChunkPayload = 256 * 1024;
 constexpr std::size_t kFrameRam = 8;
 constexpr std::uint16_t kMaxFrames = 256;
 constexpr std::uint8_t kControlLatency = 2;
@@ -21,6 +21,7 @@ constexpr std::uint8_t kRoiStep = 4;
 constexpr Nanoseconds kFramePeriod = std::chrono::milliseconds(40);  // full frame over USB 2
 constexpr Nanoseconds kReadout = std::chrono::milliseconds(1);
 constexpr Nanoseconds kStatusPeriod = std::chrono::milliseconds(100);
+constexpr double kFullLevel = 65535;
 constexpr std::size_t kStoredAcks = 8;
 constexpr std::size_t kStoredEvents = 64;
 constexpr std::size_t kInputQueue = 63;  // as hidraw keeps them
@@ -588,52 +589,43 @@ void Device::finishExposure() {
     }
 }
 
-void Device::queueFrame(const Exposing& done, int index) {
-    const Settings& s = done.settings;
-    const NoiseKey key{.seed = config_.seed,
-                       .planStep = capture_->id >> 16,
-                       .frameIndex = static_cast<std::uint64_t>(index)};
+Image<std::uint16_t> Device::exposed(const Settings& s, const NoiseKey& key) {
+    const auto expose = [&](const Image<float>* rate, double level) {
+        return sensor_.expose(
+            rate, level, grantedExposure(s.exposureUs), format_.view, key, format_.binning);
+    };
+    if (s.led < 0) return expose(nullptr, 1);
+    const RateImages& images = rates(s.led);
     // One band is lit at a time in a measurement; several together add their light.
-    const Image<float>* rate = nullptr;
-    Image<float> sum;
-    double level = 1;
-    if (s.led >= 0) {
-        const RateImages& images = rates(s.led);
-        const auto lit = static_cast<int>(
-            std::count_if(s.levels.begin(), s.levels.end(), [](auto v) { return v != 0; }));
-        if (lit == 1) {
-            const auto band = static_cast<std::size_t>(
-                std::find_if(s.levels.begin(), s.levels.end(), [](auto v) { return v != 0; }) -
-                s.levels.begin());
-            rate = &images[band];
-            level = s.levels[band] / 65535.0;
-        } else {
-            sum = Image<float>(format_.view.size);
-            for (std::size_t c = 0; c < 3; ++c) {
-                const auto share = static_cast<float>(s.levels[c] / 65535.0);
-                for (std::size_t i = 0; i < sum.pixels().size(); ++i) {
-                    sum.pixels()[i] += share * images[c].pixels()[i];
-                }
-            }
-            rate = &sum;
+    const auto isLit = [](std::uint16_t level) { return level != 0; };
+    if (std::count_if(s.levels.begin(), s.levels.end(), isLit) == 1) {
+        const auto lit = std::find_if(s.levels.begin(), s.levels.end(), isLit);
+        const auto band = static_cast<std::size_t>(lit - s.levels.begin());
+        return expose(&images[band], *lit / kFullLevel);
+    }
+    Image<float> sum(format_.view.size);
+    for (std::size_t c = 0; c < 3; ++c) {
+        const auto share = static_cast<float>(s.levels[c] / kFullLevel);
+        for (std::size_t i = 0; i < sum.pixels().size(); ++i) {
+            sum.pixels()[i] += share * images[c].pixels()[i];
         }
     }
-    const Nanoseconds exposure = grantedExposure(s.exposureUs);
-    const Image<std::uint16_t> image =
-        sensor_.expose(rate, level, exposure, format_.view, key, format_.binning);
-    const std::vector<std::uint8_t> bytes = packPixels(image, format_.format);
+    return expose(&sum, 1);
+}
 
+Leader Device::leaderOf(const Exposing& done, Size sent) const {
+    const Settings& s = done.settings;
     Leader leader;
-    leader.width = static_cast<std::uint16_t>(image.width());
-    leader.height = static_cast<std::uint16_t>(image.height());
-    leader.stride = *strideOf(format_.format, image.width());
+    leader.width = static_cast<std::uint16_t>(sent.width);
+    leader.height = static_cast<std::uint16_t>(sent.height);
+    leader.stride = *strideOf(format_.format, sent.width);
     leader.format = format_.format;
     leader.led = s.led >= 0 ? static_cast<std::uint8_t>(s.led) : kDarkLed;
     for (unsigned c = 0; c < 3; ++c) {
         if (s.led >= 0 && s.levels[c] != 0) leader.channels |= static_cast<std::uint8_t>(1U << c);
     }
     leader.exposureRequestedUs = s.exposureUs;
-    leader.exposureGrantedNs = static_cast<std::uint64_t>(exposure.count());
+    leader.exposureGrantedNs = static_cast<std::uint64_t>(grantedExposure(s.exposureUs).count());
     leader.gain = s.gain;
     if (s.led >= 0) leader.ledLevel = s.levels;
     leader.temperature = temperatures();
@@ -641,42 +633,41 @@ void Device::queueFrame(const Exposing& done, int index) {
     leader.x = static_cast<std::uint16_t>(format_.view.x);
     leader.y = static_cast<std::uint16_t>(format_.view.y);
     leader.binning = static_cast<std::uint8_t>(format_.binning);
-    leader.frameBytes = static_cast<std::uint32_t>(bytes.size());
+    leader.frameBytes = leader.stride * static_cast<std::uint32_t>(sent.height);
     leader.exposureStartUs = microseconds(done.start);
     leader.frameNumber = done.number;
+    return leader;
+}
 
+Trailer Device::trailerOf(const Exposing& done, const Image<std::uint16_t>& image) const {
     Trailer trailer;
-    trailer.frameBytes = leader.frameBytes;
-    trailer.frameCrc = crc32c(bytes);
     trailer.exposureEndUs = microseconds(done.end);
-    if (s.led >= 0) trailer.currentMin = trailer.currentMax = currents(s.levels);
+    if (done.settings.led >= 0) {
+        trailer.currentMin = trailer.currentMax = currents(done.settings.levels);
+    }
     const bool seated = (interlock_ & interlock::kMayLight) == interlock::kMayLight;
     trailer.validity = seated ? validity::kAll : validity::kCurrent | validity::kTemperature;
     trailer.saturatedPixels = static_cast<std::uint32_t>(
         std::count(image.pixels().begin(), image.pixels().end(), kFullScale));
+    return trailer;
+}
 
-    const std::size_t count = (bytes.size() + kMaxChunkPayload - 1) / kMaxChunkPayload;
-    ChunkHeader header{.bootId = bootId_,
-                       .captureId = capture_->id,
-                       .frameIndex = static_cast<std::uint16_t>(index),
-                       .chunkCount = static_cast<std::uint16_t>(count),
-                       .timeUs = microseconds(now_)};
-    StoredFrame stored{.capture = capture_->id, .index = index, .chunks = {}};
-    header.type = ChunkType::Leader;
-    stored.chunks.push_back(encodeChunk(header, encode(leader)));
-    for (std::size_t i = 0; i < count; ++i) {
-        header.type = ChunkType::Data;
-        header.chunkIndex = static_cast<std::uint16_t>(i + 1);
-        header.offset = static_cast<std::uint32_t>(i * kMaxChunkPayload);
-        const std::size_t length =
-            std::min<std::size_t>(kMaxChunkPayload, bytes.size() - header.offset);
-        stored.chunks.push_back(
-            encodeChunk(header, std::span(bytes).subspan(header.offset, length)));
-    }
-    header.type = ChunkType::Trailer;
-    header.chunkIndex = static_cast<std::uint16_t>(count + 1);
-    header.offset = 0;
-    stored.chunks.push_back(encodeChunk(header, encode(trailer)));
+void Device::queueFrame(const Exposing& done, int index) {
+    const NoiseKey key{.seed = config_.seed,
+                       .planStep = capture_->id >> 16,
+                       .frameIndex = static_cast<std::uint64_t>(index)};
+    const Image<std::uint16_t> image = exposed(done.settings, key);
+    const std::vector<std::uint8_t> bytes = packPixels(image, format_.format);
+    Trailer trailer = trailerOf(done, image);
+    trailer.frameBytes = static_cast<std::uint32_t>(bytes.size());
+    trailer.frameCrc = crc32c(bytes);
+    const ChunkHeader header{.bootId = bootId_,
+                             .captureId = capture_->id,
+                             .frameIndex = static_cast<std::uint16_t>(index),
+                             .timeUs = microseconds(now_)};
+    StoredFrame stored{.capture = capture_->id,
+                       .index = index,
+                       .chunks = frameChunks(header, leaderOf(done, image.size()), bytes, trailer)};
     for (const auto& chunk : stored.chunks) queueChunk(chunk, false);
     frameRam_.push_back(std::move(stored));
     if (frameRam_.size() > kFrameRam) frameRam_.pop_front();

@@ -117,6 +117,11 @@ private:
     void beginExposureIfDue();
     void finishExposure();
     void queueFrame(const Exposing& exposing, int index);
+    [[nodiscard]] Image<std::uint16_t> exposed(const Settings& settings, const NoiseKey& key);
+    [[nodiscard]] driver::Leader leaderOf(const Exposing& done, Size sent) const;
+    /// All but the bytes' count and CRC.
+    [[nodiscard]] driver::Trailer trailerOf(const Exposing& done,
+                                            const Image<std::uint16_t>& image) const;
     void queueChunk(std::vector<std::uint8_t> chunk, bool resent);
     void raise(std::uint16_t code, std::uint32_t arg0, std::uint32_t arg1);
     void pushStatus();

@@ -1,7 +1,6 @@
 // Commands that need a rig: calibrate mirror|black|white, and measure. Today's rig is the simulated
 // one, in this process.
 
-#include <chrono>
 #include <ctime>
 #include <filesystem>
 #include <iostream>
@@ -13,6 +12,7 @@
 #include "daemon/measurement.h"
 #include "daemon/sim_bench.h"
 #include "daemon/store_lock.h"
+#include "driver/steady_clock.h"
 #include "proc/core/log.h"
 #include "proc/core/number_text.h"
 #include "proc/formats/file_bytes.h"
@@ -29,13 +29,6 @@ constexpr int kDarkFrames = 4;
 // us leave a tile just unsaturated; 1.28 ms add light where the view is dim.
 constexpr BracketPlan kWhiteBracket{.frames = 8, .dim = false, .longest = 3, .first = 2};
 constexpr BracketPlan kBlackBracket{.frames = 8, .dim = false, .longest = -1, .first = 5};
-
-class SystemClock : public Clock {
-public:
-    [[nodiscard]] Nanoseconds now() const override {
-        return std::chrono::steady_clock::now().time_since_epoch();
-    }
-};
 
 std::string utcNow() {
     const std::time_t now = std::time(nullptr);
@@ -106,7 +99,7 @@ public:
     StoreLock lock;
     SimState state;
     RigProfile profile;
-    SystemClock computer;
+    driver::SteadyClock computer;
     std::unique_ptr<sim::InProcessDoor> door;
     driver::Rig rig;
 

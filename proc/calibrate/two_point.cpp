@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "proc/core/median.h"
 #include "proc/core/parallel.h"
 
 namespace gonio::proc {
@@ -71,13 +72,6 @@ double slope(const std::vector<double>& f, const std::vector<Flags>& flags, std:
                       difference(beside(-1), beside(1)));
 }
 
-double median(std::vector<double>& values) {
-    if (values.empty()) return std::nan("");
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 Budget summary(const CellSamples& samples, const std::vector<Contributions>& contributions) {
     Budget budget;
     for (std::size_t i = 0; i < ComponentCount; ++i) {
@@ -89,7 +83,7 @@ Budget summary(const CellSamples& samples, const std::vector<Contributions>& con
         budget.push_back({.name = kComponents[i].name,
                           .type = kComponents[i].type,
                           .correlation = kComponents[i].correlation,
-                          .medianRelative = median(relative)});
+                          .medianRelative = median(std::move(relative))});
     }
     return budget;
 }

@@ -22,6 +22,8 @@ struct Answer {
     /// No f here; the flags say why.
     [[nodiscard]] static Answer none(Flags why, Source source);
     [[nodiscard]] bool present() const;
+    /// Combined standard uncertainty of f; empty where nothing is known of it.
+    [[nodiscard]] std::optional<double> u(Band band) const;
 };
 
 /// Whether f differs between the bands: a monochrome file has one column, not three equal ones.

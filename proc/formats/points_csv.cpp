@@ -208,13 +208,6 @@ std::vector<std::string> perBand(const std::string& name, BandCount bands) {
     return names;
 }
 
-std::optional<double> combinedU(const Answer& answer, Band band) {
-    if (!answer.uRandom && !answer.uSystematic) return std::nullopt;
-    const double random = answer.uRandom ? (*answer.uRandom)[band] : 0;
-    const double systematic = answer.uSystematic ? (*answer.uSystematic)[band] : 0;
-    return std::hypot(random, systematic);
-}
-
 std::span<const Band> shownBands(BandCount bands) {
     return std::span(kBands).first(bands == BandCount::One ? 1 : kBands.size());
 }
@@ -253,7 +246,7 @@ std::string evalCsv(const Points& points, std::span<const Answer> answers, BandC
         text += points.rows[i];
         for (const Band b : shownBands(bands)) text += "," + orEmpty(answer.f[b]);
         for (const Band b : shownBands(bands)) {
-            const auto u = combinedU(answer, b);
+            const auto u = answer.u(b);
             if (withU) text += "," + (u ? orEmpty(*u) : "");
         }
         text += "," + std::to_string(answer.flags.mask()) + "," + std::string(name(answer.source));

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "proc/core/median.h"
+
 namespace gonio::proc {
 namespace {
 
@@ -35,11 +37,8 @@ bool belongs(const Image<float>& image, int x, int y, double edge) {
     return own >= edge && (9 * patch(image, x, y) - own) / 8 >= edge / 2;
 }
 
-double median(const Image<float>& image) {
-    std::vector<float> values(image.pixels().begin(), image.pixels().end());
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
+double medianOf(const Image<float>& image) {
+    return median(std::vector<float>(image.pixels().begin(), image.pixels().end()));
 }
 
 struct Moments {
@@ -68,7 +67,7 @@ Result<Spot> findSpot(const MergedState& state) {
     for (int y = 1; y < image.height() - 1; ++y) {
         for (int x = 1; x < image.width() - 1; ++x) peak = std::max(peak, patch(image, x, y));
     }
-    if (!(peak > kMinContrast * std::max(0.0, median(image))) || peak <= 0) {
+    if (!(peak > kMinContrast * std::max(0.0, medianOf(image))) || peak <= 0) {
         return refused(state, "no bright spot");
     }
     const double edge = kEdgeShare * peak;

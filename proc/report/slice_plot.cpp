@@ -43,12 +43,9 @@ struct Panel {
     [[nodiscard]] double y(double f) const { return corner.y + kHeight * (1 - axis.position(f)); }
 };
 
-std::optional<double> combined(const Answer& answer, Band band) {
-    if (!answer.uRandom && !answer.uSystematic) return std::nullopt;
-    const double random = answer.uRandom ? (*answer.uRandom)[band] : 0;
-    const double systematic = answer.uSystematic ? (*answer.uSystematic)[band] : 0;
-    const double u = std::hypot(random, systematic);
-    return std::isfinite(u) ? std::optional(u) : std::nullopt;
+std::optional<double> finiteU(const Answer& answer, Band band) {
+    const std::optional<double> u = answer.u(band);
+    return u && std::isfinite(*u) ? u : std::nullopt;
 }
 
 Slice evaluate(const Scatterer& scatterer, Radians incidence) {
@@ -64,7 +61,7 @@ Slice evaluate(const Scatterer& scatterer, Radians incidence) {
             const double f = answer.f[band];
             const bool shown = std::isfinite(f) && f > 0;
             if (shown && !open[b]) slice[b].emplace_back();
-            if (shown) slice[b].back().push_back({degrees, f, combined(answer, band)});
+            if (shown) slice[b].back().push_back({degrees, f, finiteU(answer, band)});
             open[b] = shown;
         }
     }
