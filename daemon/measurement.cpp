@@ -40,7 +40,7 @@ std::vector<proc::RawExposure> describeBracket(const std::vector<Frame>& frames,
 
 Result<proc::DarkLibrary> takeDarks(const Bench& bench, Sequencer& sequencer, int frames) {
     Result<std::vector<proc::DarkFrame>> darks =
-        sequencer.darks(frames, [&] { bench.step("dark frames"); });
+        sequencer.darks(frames, [&] { return bench.step("dark frames"); });
     if (!darks) return darks.error();
     proc::DarkLibrary library;
     for (proc::DarkFrame& dark : *darks) library.add(std::move(dark));
@@ -108,8 +108,10 @@ Result<LensRecord> measureLens(const Bench& bench, const PlaceMirror& place) {
         for (int led = 0; led < static_cast<int>(leds.size()); ++led) {
             const Direction seen =
                 proc::mirroredBy(wedge, lightAt(leds[static_cast<std::size_t>(led)]));
-            bench.step("mirror " + fixed(wedge.aboutX.degrees(), 0) + "/" +
-                       fixed(wedge.aboutY.degrees(), 0) + " LED " + std::to_string(led));
+            const Result<void> on =
+                bench.step("mirror " + fixed(wedge.aboutX.degrees(), 0) + "/" +
+                           fixed(wedge.aboutY.degrees(), 0) + " LED " + std::to_string(led));
+            if (!on) return on.error();
             if (seen.theta() > kUsableSpot) continue;
             const auto frames = sequencer.expose({led, Band::G},
                                                  bench.profile.dimLevels.back(),
@@ -161,7 +163,7 @@ Result<Captured> measurePlacement(const Bench& bench,
         freedom += static_cast<double>(merged->freedom);
         captured.raw.states.push_back(
             {.merged = std::move(*merged), .bracket = describeBracket(*frames, state.band)});
-        bench.step(stateName(state));
+        if (Result<void> on = bench.step(stateName(state)); !on) return on.error();
     }
     captured.chiSquarePerFreedom = freedom > 0 ? chiSquare / freedom : 1;
     return captured;

@@ -23,8 +23,9 @@ struct Bench {
     driver::Rig& rig;
     const RigProfile& profile;
     std::uint64_t& nextPlanStep;
-    const Clock& clock;                            ///< of the computer, for compute seconds
-    std::function<void(const std::string&)> step;  ///< one step of progress is done
+    const Clock& clock;  ///< of the computer, for compute seconds
+    /// One step of progress is done; an error that it returns ends the measurement.
+    std::function<Result<void>(const std::string&)> step;
 };
 
 /// The window that is read: the square in the middle of the sensor.

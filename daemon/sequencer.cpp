@@ -91,7 +91,7 @@ Result<std::vector<Frame>> Sequencer::bracket(State state, const BracketPlan& pl
 }
 
 Result<std::vector<proc::DarkFrame>> Sequencer::darks(int frames,
-                                                      const std::function<void()>& done) {
+                                                      const std::function<Result<void>()>& done) {
     std::vector<proc::DarkFrame> darks;
     for (Microseconds exposure : profile_.exposures) {
         const auto taken = rig_.capture({.planStep = nextPlanStep_++,
@@ -103,7 +103,7 @@ Result<std::vector<proc::DarkFrame>> Sequencer::darks(int frames,
         Result<proc::DarkFrame> dark = proc::averageDark(taken->frames, profile_.noise);
         if (!dark) return dark.error();
         darks.push_back(std::move(*dark));
-        done();
+        if (Result<void> on = done(); !on) return on.error();
     }
     return darks;
 }

@@ -46,9 +46,10 @@ public:
                                                     double level,
                                                     Microseconds exposure,
                                                     int frames);
-    /// Mean dark frames for the whole ladder of exposures; `done` is called after each.
-    [[nodiscard]] Result<std::vector<proc::DarkFrame>> darks(int frames,
-                                                             const std::function<void()>& done);
+    /// Mean dark frames for the whole ladder of exposures; `done` is called after each, and an
+    /// error that it returns ends the ladder.
+    [[nodiscard]] Result<std::vector<proc::DarkFrame>> darks(
+        int frames, const std::function<Result<void>()>& done);
 
 private:
     driver::Rig& rig_;

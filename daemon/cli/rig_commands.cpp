@@ -80,7 +80,10 @@ public:
                 .profile = profile,
                 .nextPlanStep = state.nextPlanStep,
                 .clock = computer,
-                .step = [&progress](const std::string& what) { progress.step(what); }};
+                .step = [&progress](const std::string& what) -> Result<void> {
+                    progress.step(what);
+                    return {};
+                }};
     }
     /// What every file of this session says of its origin.
     [[nodiscard]] proc::SampleInfo info(const std::string& name) const {

@@ -114,7 +114,10 @@ TEST_F(SequencerOnSim, NoTwoCapturesShareAPlanStep) {
 TEST_F(SequencerOnSim, DarksCoverTheLadder) {
     Sequencer sequencer(*rig, profile, nextPlanStep);
     int steps = 0;
-    const auto darks = sequencer.darks(2, [&] { ++steps; });
+    const auto darks = sequencer.darks(2, [&]() -> Result<void> {
+        ++steps;
+        return {};
+    });
     ASSERT_TRUE(darks) << darks.error().message;
     ASSERT_EQ(darks->size(), profile.exposures.size());
     EXPECT_EQ(steps, static_cast<int>(profile.exposures.size()));
