@@ -29,7 +29,6 @@ Result<SimState> readSimState(const Store& store) {
         state.placed = json.at("placed").get<std::string>();
         state.wedge.aboutX = Radians::fromDegrees(json.at("tilt_x_deg").get<double>());
         state.wedge.aboutY = Radians::fromDegrees(json.at("tilt_y_deg").get<double>());
-        state.nextPlanStep = json.at("next_plan_step").get<std::uint64_t>();
         return state;
     } catch (const std::exception& error) {
         return Error{ErrorKind::File,
@@ -45,8 +44,7 @@ Result<void> writeSimState(const Store& store, const SimState& state) {
                        {"systematic", state.systematic},
                        {"placed", state.placed},
                        {"tilt_x_deg", state.wedge.aboutX.degrees()},
-                       {"tilt_y_deg", state.wedge.aboutY.degrees()},
-                       {"next_plan_step", state.nextPlanStep}};
+                       {"tilt_y_deg", state.wedge.aboutY.degrees()}};
     return proc::writeFile(store.simState(),
                            json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }

@@ -1,7 +1,6 @@
 #pragma once
-// The simulated rig of a store: what it is and what lies under it is kept in sim.json between one
-// call of the program and the next, so that `gonio sim place white` and `gonio calibrate white` are
-// two commands, as they are with a rig on a table.
+// The simulated rig of a store: what it is and what lies under it is kept in sim.json, so that it
+// is still there when the daemon comes back, as a rig on a table would be.
 
 #include <cstdint>
 #include <memory>
@@ -18,7 +17,6 @@ struct SimState {
     std::string systematic = "random";  ///< errors of the references: none, random, stratum:K
     std::string placed = "nothing";     ///< nothing, black, white, mirror, or F
     sim::Wedge wedge;
-    std::uint64_t nextPlanStep = 1;  ///< no two captures share their noise
 };
 
 /// The defaults when there is no sim.json yet.

@@ -3,24 +3,18 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "daemon/store_schema.h"
+
 namespace gonio::daemon {
 namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::string> kMigrations{R"(
-    CREATE TABLE samples(
-        name TEXT PRIMARY KEY, rig TEXT NOT NULL, date TEXT NOT NULL,
-        file TEXT NOT NULL, raw TEXT);
-    CREATE TABLE calibrations(
-        id INTEGER PRIMARY KEY, rig TEXT NOT NULL, kind TEXT NOT NULL, date TEXT NOT NULL,
-        file TEXT NOT NULL, raw TEXT);
-    CREATE INDEX newest_calibration ON calibrations(rig, kind, id);
-)"};
-
 constexpr std::string_view kRawExtension = ".graw";
 
-fs::path defaultRoot() {
+}  // namespace
+
+fs::path defaultStore() {
     const auto variable = [](const char* name) -> std::string {
         const char* value = std::getenv(name);
         return value != nullptr ? value : "";
@@ -34,8 +28,6 @@ fs::path defaultRoot() {
     }
     return ".gonio";
 }
-
-}  // namespace
 
 Result<void> checkSampleName(std::string_view name) {
     constexpr std::size_t kLongest = 64;
@@ -53,7 +45,7 @@ Result<void> checkSampleName(std::string_view name) {
 }
 
 Result<Store> Store::open(const fs::path& chosen) {
-    const fs::path root = chosen.empty() ? defaultRoot() : chosen;
+    const fs::path root = chosen.empty() ? defaultStore() : chosen;
     std::error_code failed;
     fs::create_directories(root, failed);
     if (failed) {
@@ -63,7 +55,7 @@ Result<Store> Store::open(const fs::path& chosen) {
     }
     Result<ObjectFolder> objects = ObjectFolder::open(root / "objects");
     if (!objects) return objects.error();
-    Result<Database> database = Database::open(root / "gonio.db", kMigrations);
+    Result<Database> database = openStoreDatabase(root);
     if (!database) return database.error();
     return Store(root, std::move(*objects), std::move(*database));
 }
@@ -71,6 +63,15 @@ Result<Store> Store::open(const fs::path& chosen) {
 fs::path Store::pathOf(const SqlValue& object) const {
     const std::string name = textOf(object);
     return name.empty() ? fs::path() : objects_.pathOf(name);
+}
+
+SampleRecord Store::sampleOf(const SqlRow& row) const {
+    return {.name = textOf(row[0]),
+            .rig = textOf(row[1]),
+            .dateUtc = textOf(row[2]),
+            .session = textOf(row[3]),
+            .file = pathOf(row[4]),
+            .raw = pathOf(row[5])};
 }
 
 Result<Store::Objects> Store::keep(const Contents& contents, std::string_view extension) const {
@@ -111,9 +112,10 @@ Result<Store::Added> Store::addSample(SampleRecord record, const Contents& conte
             if (!moved) return moved.error();
             movedTo = *other;
         }
-        const auto inserted =
-            database_.run("INSERT INTO samples(name, rig, date, file, raw) VALUES(?, ?, ?, ?, ?)",
-                          {record.name, record.rig, record.dateUtc, objects->file, objects->raw});
+        const auto inserted = database_.run(
+            "INSERT INTO samples(name, rig, date, session, file, raw) "
+            "VALUES(?, ?, ?, ?, ?, ?)",
+            {record.name, record.rig, record.dateUtc, record.session, objects->file, objects->raw});
         return inserted ? Result<void>() : inserted.error();
     });
     if (!done) return done.error();
@@ -123,26 +125,23 @@ Result<Store::Added> Store::addSample(SampleRecord record, const Contents& conte
 }
 
 Result<SampleRecord> Store::sample(const std::string& name) {
-    const auto rows =
-        database_.run("SELECT rig, date, file, raw FROM samples WHERE name = ?", {name});
+    const auto rows = database_.run(
+        "SELECT name, rig, date, session, file, raw FROM samples WHERE name = ?", {name});
     if (!rows) return rows.error();
     if (rows->empty()) {
         return Error{
             ErrorKind::File,
             "sample:" + name + ": the store " + root_.string() + " has no sample of this name"};
     }
-    const SqlRow& row = rows->front();
-    return SampleRecord{name, textOf(row[0]), textOf(row[1]), pathOf(row[2]), pathOf(row[3])};
+    return sampleOf(rows->front());
 }
 
 Result<std::vector<SampleRecord>> Store::samples() {
-    const auto rows = database_.run("SELECT name, rig, date, file, raw FROM samples ORDER BY name");
+    const auto rows =
+        database_.run("SELECT name, rig, date, session, file, raw FROM samples ORDER BY name");
     if (!rows) return rows.error();
     std::vector<SampleRecord> all;
-    for (const SqlRow& row : *rows) {
-        all.push_back(
-            {textOf(row[0]), textOf(row[1]), textOf(row[2]), pathOf(row[3]), pathOf(row[4])});
-    }
+    for (const SqlRow& row : *rows) all.push_back(sampleOf(row));
     return all;
 }
 

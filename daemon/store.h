@@ -1,9 +1,11 @@
 #pragma once
 // Where calibrations and samples are kept, of all rigs.
 //
-//   gonio.db      what there is (SQLite): samples by name, calibrations by rig, kind and time
+//   gonio.db      what there is (SQLite): samples by name, calibrations by rig, kind and time, and
+//                 the logbook (logbook.h)
 //   objects/      the files themselves, named by their content
-//   sim.json      the simulated rig: serial, seed, what lies under it, next plan step
+//   sim.json      the simulated rig: serial, seed, what lies under it
+//   rig.lock      held by the daemon that owns the rig; goniod.sock is its door
 //
 // Files first, then their row, then the answer: what was acknowledged survives kill -9 and power
 // loss, what was not is absent or whole. Nothing is ever overwritten.
@@ -24,6 +26,7 @@ struct SampleRecord {
     std::string name;
     std::string rig;      ///< serial
     std::string dateUtc;  ///< ISO 8601
+    std::string session;  ///< name of the laboratory session; empty: none was open
     std::filesystem::path file;
     std::filesystem::path raw;
 };
@@ -42,10 +45,12 @@ struct Contents {
     std::string raw;  ///< empty: there is none
 };
 
+/// $GONIO_STORE, else $XDG_DATA_HOME/gonio, else ~/.local/share/gonio.
+[[nodiscard]] std::filesystem::path defaultStore();
+
 class Store {
 public:
-    /// --store DIR, else $GONIO_STORE, else $XDG_DATA_HOME/gonio, else ~/.local/share/gonio.
-    /// Made when it is not there.
+    /// Empty: defaultStore(). Made when it is not there.
     [[nodiscard]] static Result<Store> open(const std::filesystem::path& chosen);
 
     [[nodiscard]] const std::filesystem::path& root() const { return root_; }
@@ -72,6 +77,7 @@ private:
     Store(std::filesystem::path root, ObjectFolder objects, Database database)
         : root_(std::move(root)), objects_(std::move(objects)), database_(std::move(database)) {}
     [[nodiscard]] std::filesystem::path pathOf(const SqlValue& object) const;
+    [[nodiscard]] SampleRecord sampleOf(const SqlRow& row) const;
     [[nodiscard]] Result<std::string> freeName(const std::string& name);
     struct Objects {
         std::string file;

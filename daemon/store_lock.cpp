@@ -18,8 +18,8 @@ Result<StoreLock> StoreLock::take(const std::filesystem::path& storeRoot) {
     }
     if (::flock(lock.descriptor_, LOCK_EX | LOCK_NB) != 0) {
         return Error{ErrorKind::Busy,
-                     "store: another gonio uses the rig of " + storeRoot.string() +
-                         "; wait until it is done, or choose another store with --store DIR"};
+                     "store: another goniod has " + storeRoot.string() +
+                         "; end it, or choose another with --store DIR"};
     }
     return lock;
 }
