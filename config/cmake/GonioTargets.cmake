@@ -1,7 +1,7 @@
 # gonio_library(NAME SOURCES ... [PUBLIC libs] [PRIVATE libs]): the one target of a folder.
 # gonio_test(NAME LABEL label SOURCES ... LIBS ... [TIMEOUT seconds] [WRAPPER command ...]): a
 # GoogleTest program with one label. A label `run` takes all cores: its tests run alone.
-# gonio_program_test(...): likewise, for tests that run the `gonio` program (GONIO_PROGRAM).
+# gonio_program_test(...): likewise, for tests that run the built programs (GONIO_PROGRAM, GONIO_DAEMON).
 
 add_library(gonio_options INTERFACE)
 target_compile_options(gonio_options INTERFACE
@@ -57,6 +57,7 @@ endfunction()
 
 function(gonio_program_test name)
     gonio_test(${name} ${ARGN})
-    target_compile_definitions(${name} PRIVATE GONIO_PROGRAM="$<TARGET_FILE:gonio>")
-    add_dependencies(${name} gonio)
+    target_compile_definitions(${name} PRIVATE
+        GONIO_PROGRAM="$<TARGET_FILE:gonio>" GONIO_DAEMON="$<TARGET_FILE:goniod>")
+    add_dependencies(${name} gonio goniod)
 endfunction()

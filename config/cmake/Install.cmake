@@ -39,8 +39,8 @@ install(FILES ${CMAKE_BINARY_DIR}/gonioConfig.cmake ${CMAKE_BINARY_DIR}/gonioCon
 
 if(TARGET gonio)
     # One place for the program in every build tree: scripts need not know where its sources are.
-    set_target_properties(gonio PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
-    install(TARGETS gonio COMPONENT program)
+    set_target_properties(gonio goniod PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+    install(TARGETS gonio goniod COMPONENT program)
     install(DIRECTORY config/rigs config/references config/demo COMPONENT program
         DESTINATION ${CMAKE_INSTALL_DATADIR}/gonio OPTIONAL)
 endif()

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/engine/sim_port.h"
 #include "proc/core/effort.h"
 #include "proc/core/result.h"
 
@@ -15,18 +16,15 @@ namespace gonio::daemon {
 struct CommonOptions {
     bool json = false;
     bool quiet = false;
-    std::filesystem::path store;  ///< empty: the default place
+    bool yes = false;              ///< what a person is asked to do is done
+    std::filesystem::path store;   ///< empty: the default place
+    std::filesystem::path socket;  ///< empty: of the store
+
+    /// Where the daemon is.
+    [[nodiscard]] std::filesystem::path socketPath() const;
 };
 
-struct PlaceOptions {
-    std::string what;         ///< black, white, mirror, nothing, or F
-    double tiltXDegrees = 0;  ///< turns the surface about x
-    double tiltYDegrees = 0;
-    std::optional<std::uint64_t> seed;
-    std::optional<std::string> serial;
-    std::optional<std::string> systematic;  ///< none, random, or stratum:K
-};
-Result<void> simPlace(const CommonOptions& common, const PlaceOptions& options);
+Result<void> simPlace(const CommonOptions& common, PlaceRequest place);
 
 struct ScoreOptions {
     std::vector<std::filesystem::path> files;
@@ -40,20 +38,42 @@ enum class Reference {
     Black,
     White
 };
-struct CalibrateOptions {
-    Reference reference = Reference::Mirror;
-    std::filesystem::path profile;  ///< empty: config/rigs/minidiff-usb2.toml
+Result<void> calibrate(const CommonOptions& common, Reference reference);
+
+struct VerifyOptions {
+    double limit = 0.01;  ///< largest relative change that passes
 };
-Result<void> calibrate(const CommonOptions& common, const CalibrateOptions& options);
+Result<void> verifyWhite(const CommonOptions& common, const VerifyOptions& options);
 
 struct MeasureOptions {
     std::string name;
     Effort effort = Effort::Standard;
     std::string notes;
     std::filesystem::path output;  ///< a copy of the .gonio; empty: the store only
-    std::filesystem::path profile;
 };
 Result<void> measure(const CommonOptions& common, const MeasureOptions& options);
+
+Result<void> status(const CommonOptions& common);
+Result<void> rigs(const CommonOptions& common);
+Result<void> samples(const CommonOptions& common);
+Result<void> jobs(const CommonOptions& common);
+/// Ends the job that runs.
+Result<void> cancelJob(const CommonOptions& common);
+
+struct SessionOptions {
+    std::string name;  ///< empty: its date
+    std::string operatorName;
+    std::string notes;
+};
+Result<void> newSession(const CommonOptions& common, const SessionOptions& options);
+Result<void> closeSession(const CommonOptions& common);
+Result<void> listSessions(const CommonOptions& common);
+
+struct WatchOptions {
+    std::optional<std::uint64_t> after;  ///< number of an event; empty: from now on
+};
+/// Prints events as they happen, until Ctrl-C.
+Result<void> watch(const CommonOptions& common, const WatchOptions& options);
 
 Result<void> info(const CommonOptions& common, const std::string& file);
 
@@ -70,6 +90,13 @@ struct ConvertOptions {
     std::string to;  ///< zemax, csv, gonio; empty: by the output's extension
 };
 Result<void> convert(const CommonOptions& common, const ConvertOptions& options);
+
+struct ExportOptions {
+    std::string file;
+    std::filesystem::path output;
+    std::string formats;  ///< of gonio, zemax, csv, with commas; empty: all that it can become
+};
+Result<void> exportTo(const CommonOptions& common, const ExportOptions& options);
 
 struct PlotOptions {
     std::string file;

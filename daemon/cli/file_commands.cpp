@@ -1,22 +1,22 @@
-// Commands on files: eval, convert, plot. None of them needs a rig or takes the store's lock.
+// Commands on files: eval, convert, export, plot. None of them needs a rig or takes the store's
+// lock.
 
 #include <algorithm>
 #include <cctype>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "daemon/cli/commands.h"
+#include "daemon/cli/output.h"
+#include "daemon/exports.h"
 #include "daemon/material.h"
 #include "proc/core/number_text.h"
 #include "proc/core/parallel.h"
 #include "proc/formats/file_bytes.h"
-#include "proc/formats/file_degrees.h"
-#include "proc/formats/gonio_exr.h"
 #include "proc/formats/points_csv.h"
-#include "proc/formats/zemax.h"
 #include "proc/report/hemisphere_map.h"
 #include "proc/report/slice_plot.h"
-#include "proc/table/specular_fill.h"
 
 namespace gonio::daemon {
 namespace {
@@ -47,41 +47,33 @@ void reportLoss(const CommonOptions& common,
     files.push_back({{"file", file.string()}, {"lost", lost}});
 }
 
-/// name.bsdf -> name_G.bsdf.
-fs::path forBand(const fs::path& file, Band band) {
-    fs::path out = file;
-    out.replace_filename(file.stem().string() + "_" + std::string(1, "RGB"[index(band)]) +
-                         file.extension().string());
-    return out;
-}
-
-Result<void> convertToZemax(const CommonOptions& common,
-                            const Material& from,
-                            const fs::path& output,
-                            Json& files) {
-    if (from.table != nullptr) {  // as it is: nothing to resample
-        const proc::Written written = proc::writeZemax(*from.table);
-        if (Result<void> done = proc::writeFile(output, written.bytes); !done) return done;
-        reportLoss(common, output, written.loss, files);
-        return {};
-    }
-    std::vector<double> incidences;
-    for (Radians i : from.incidences()) incidences.push_back(proc::fileDegrees(i));
-    const auto grid = proc::SpecularGrid::oneDegree(incidences, proc::TableSymmetry::Asymmetrical);
-    const bool mono = from.scatterer->bandCount() == BandCount::One;
-    for (Band band : kBands) {
-        if (mono && band != Band::R) break;
-        proc::FilledTable filled = proc::fillTable(*from.scatterer, grid, band);
-        if (!mono) filled.table.comments.push_back(proc::wavelengthComment(band));
-        proc::Written written = proc::writeZemax(filled.table);
-        written.loss.add("nodes without an answer, written as 0", filled.unanswered);
-        written.loss.add("answers of exactly 0, which read back as missing", filled.exactZero);
-        written.loss.add("uncertainties left out", filled.uncertain);
-        const fs::path file = mono ? output : forBand(output, band);
-        if (Result<void> done = proc::writeFile(file, written.bytes); !done) return done;
-        reportLoss(common, file, written.loss, files);
+/// Writes what a surface becomes: STEM.EXT, or STEM_R.EXT ... where a file holds one band.
+Result<void> writeExports(const CommonOptions& common,
+                          const std::vector<ExportedFile>& exported,
+                          const fs::path& output,
+                          Json& files) {
+    for (const ExportedFile& one : exported) {
+        fs::path file = output;
+        file.replace_filename(output.stem().string() + one.suffix + output.extension().string());
+        if (Result<void> done = proc::writeFile(file, one.bytes); !done) return done;
+        reportLoss(common, file, one.loss, files);
     }
     return {};
+}
+
+/// The formats of a list such as "gonio,zemax"; all of them for an empty one.
+Result<std::vector<ExportFormat>> formatsOf(const std::string& list) {
+    if (list.empty()) {
+        return std::vector{ExportFormat::Gonio, ExportFormat::Zemax, ExportFormat::Csv};
+    }
+    std::vector<ExportFormat> formats;
+    std::istringstream words(list);
+    for (std::string word; std::getline(words, word, ',');) {
+        const Result<ExportFormat> format = parseExportFormat(word);
+        if (!format) return format.error().in("export");
+        formats.push_back(*format);
+    }
+    return formats;
 }
 
 /// What a plot is of: the sample's own name, the model, or the file's.
@@ -122,38 +114,50 @@ Result<void> eval(const CommonOptions& common, const EvalOptions& options) {
 Result<void> convert(const CommonOptions& common, const ConvertOptions& options) {
     const Result<Material> material = openMaterial(options.input, common.store);
     if (!material) return material.error();
-    std::string to = options.to;
-    if (to.empty()) {
-        const std::string extension = options.output.extension().string();
-        to = extension == ".bsdf"    ? "zemax"
-             : extension == ".csv"   ? "csv"
-             : extension == ".gonio" ? "gonio"
-                                     : "";
+    std::optional<ExportFormat> format = formatOfExtension(options.output.extension().string());
+    if (!options.to.empty()) {
+        const Result<ExportFormat> named = parseExportFormat(options.to);
+        if (!named) return named.error().in("convert");
+        format = *named;
     }
-    Json files = Json::array();
-    Result<void> done;
-    if (to == "zemax") {
-        done = convertToZemax(common, *material, options.output, files);
-    } else if ((to == "csv" || to == "gonio") && material->sample == nullptr) {
+    if (!format) {
         return Error{ErrorKind::Usage,
-                     "convert: only a .gonio becomes " + to + "; '" + options.input + "' is a " +
-                         material->kind};
-    } else if (to == "csv") {
-        done = proc::writeFile(options.output, proc::sampleCsv(*material->sample));
-        files.push_back({{"file", options.output.string()}, {"lost", Json::array()}});
-    } else if (to == "gonio") {
-        done = proc::writeGonio(options.output, *material->sample);
-        files.push_back({{"file", options.output.string()}, {"lost", Json::array()}});
-    } else {
-        return Error{ErrorKind::Usage,
-                     "convert: '" + (to.empty() ? options.output.string() : to) +
+                     "convert: '" + options.output.string() +
                          "': which format? Use .bsdf, .csv or .gonio, or --to zemax|csv|gonio"};
     }
+    const auto exported = exportAs(*material, *format);
+    if (!exported) return exported.error().in("convert: '" + options.input + "'");
+    Json files = Json::array();
+    Result<void> done = writeExports(common, *exported, options.output, files);
     if (!done) return done;
-    if (common.json)
-        std::cout << Json{{"schema", "gonio/convert/1"}, {"files", files}}.dump(
-                         2, ' ', false, Json::error_handler_t::replace)
-                  << "\n";
+    if (common.json) printJson({{"schema", "gonio/convert/1"}, {"files", files}});
+    return {};
+}
+
+Result<void> exportTo(const CommonOptions& common, const ExportOptions& options) {
+    const auto formats = formatsOf(options.formats);
+    if (!formats) return formats.error();
+    const Result<Material> material = openMaterial(options.file, common.store);
+    if (!material) return material.error();
+    std::error_code ignored;
+    fs::create_directories(options.output, ignored);
+    const std::string stem = fileNameOf(titleOf(options.file, *material));
+    Json files = Json::array();
+    for (const ExportFormat format : *formats) {
+        if (options.formats.empty() && material->sample == nullptr &&
+            format != ExportFormat::Zemax) {
+            continue;  // nobody asked for what this surface cannot become
+        }
+        const auto exported = exportAs(*material, format);
+        if (!exported) return exported.error().in("export: '" + options.file + "'");
+        const fs::path file = options.output / (stem + std::string(extension(format)));
+        if (Result<void> done = writeExports(common, *exported, file, files); !done) return done;
+    }
+    if (common.json) {
+        printJson({{"schema", "gonio/export/1"}, {"files", files}});
+    } else if (!common.quiet) {
+        for (const Json& one : files) std::cout << one["file"].get<std::string>() << "\n";
+    }
     return {};
 }
 
@@ -173,9 +177,7 @@ Result<void> plot(const CommonOptions& common, const PlotOptions& options) {
     if (auto done = proc::writeFile(slice, proc::slicePlots(*material->scatterer, request)); !done)
         return done;
     if (common.json) {
-        std::cout << Json{{"schema", "gonio/plot/1"}, {"files", {map.string(), slice.string()}}}
-                         .dump(2, ' ', false, Json::error_handler_t::replace)
-                  << "\n";
+        printJson({{"schema", "gonio/plot/1"}, {"files", {map.string(), slice.string()}}});
     } else if (!common.quiet) {
         std::cout << map.string() << "\n" << slice.string() << "\n";
     }

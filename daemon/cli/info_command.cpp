@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/cli/commands.h"
+#include "daemon/cli/output.h"
 #include "daemon/material.h"
 #include "proc/formats/file_degrees.h"
 #include "proc/formats/graw_exr.h"
@@ -157,7 +158,7 @@ Result<void> info(const CommonOptions& common, const std::string& file) {
     if (common.json) {
         Json json = {{"schema", "gonio/info/1"}, {"file", file}};
         json.update(*facts);
-        std::cout << json.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
+        printJson(json);
     } else {
         std::cout << "file: " << file << "\n";
         printPlain(*facts, "");

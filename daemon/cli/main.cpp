@@ -5,13 +5,26 @@
 #include <functional>
 #include <iostream>
 
+#include "daemon/api/socket_path.h"
 #include "daemon/cli/commands.h"
+#include "daemon/cli/interrupt.h"
+#include "daemon/store.h"
 #include "proc/core/log.h"
+#include "proc/core/number_text.h"
 
 namespace gonio::daemon {
 namespace {
 
 constexpr int kUsage = 2;
+constexpr int kInterrupted = 130;
+
+/// "1%" -> 0.01.
+std::optional<double> parsePercent(const std::string& text) {
+    if (!text.ends_with('%')) return std::nullopt;
+    const auto number = parseDouble(std::string_view(text).substr(0, text.size() - 1));
+    if (!number || !(*number > 0 && *number <= 100)) return std::nullopt;
+    return *number / 100;
+}
 
 /// The command that the command line chose.
 using Command = std::function<Result<void>()>;
@@ -20,14 +33,18 @@ using Command = std::function<Result<void>()>;
 struct Program {
     CLI::App app{"gonio: measures how surfaces reflect light", "gonio"};
     CommonOptions common;
-    PlaceOptions place;
+    PlaceRequest place;
     ScoreOptions score;
-    CalibrateOptions calibrate;
+    VerifyOptions verify;
+    std::string limit = "1%";
     MeasureOptions measure;
+    SessionOptions session;
+    WatchOptions watch;
     std::string effort = "standard";
     std::string infoFile;
     EvalOptions eval;
     ConvertOptions convert;
+    ExportOptions exported;
     PlotOptions plot;
     Command chosen;
     bool verbose = false;
@@ -38,7 +55,10 @@ struct Program {
                       const std::string& help,
                       Command run);
     void addSim();
-    void addRig();
+    void addCalibration();
+    void addMeasuring();
+    void addDaemon();
+    void addSession();
     void addFiles();
 };
 
@@ -48,7 +68,10 @@ CLI::App* Program::command(CLI::App& parent,
                            Command run) {
     CLI::App* sub = parent.add_subcommand(name, help);
     sub->fallthrough();
-    sub->callback([this, run = std::move(run)] { chosen = run; });
+    // A parent's own command is meant only where none of its subcommands is.
+    sub->callback([this, sub, run = std::move(run)] {
+        if (sub->get_subcommands().empty()) chosen = run;
+    });
     return sub;
 }
 
@@ -80,33 +103,71 @@ void Program::addSim() {
     sub->add_option("-o,--output", score.output, "write the table as JSON here");
 }
 
-void Program::addRig() {
+void Program::addCalibration() {
     CLI::App* parent = app.add_subcommand("calibrate", "take a reference: mirror, black or white");
     parent->require_subcommand(1);
     parent->fallthrough();
-    parent->add_option("--profile", calibrate.profile, "rig profile (TOML)");
     const auto add = [&](const std::string& name, const std::string& help, Reference reference) {
-        command(*parent, name, help, [this, reference] {
-            calibrate.reference = reference;
-            return daemon::calibrate(common, calibrate);
-        });
+        command(*parent, name, help, [this, reference] { return calibrate(common, reference); });
     };
     add("mirror", "the lens map, from a mirror on five wedges", Reference::Mirror);
     add("black", "dark frames and the black reference", Reference::Black);
     add("white", "the white reference", Reference::White);
 
+    CLI::App* sub = command(
+        app, "verify-white", "how far the white reference has changed", [this]() -> Result<void> {
+            const std::optional<double> share = parsePercent(limit);
+            if (!share) {
+                return Error{ErrorKind::Usage, "--limit '" + limit + "': wanted such as 1%"};
+            }
+            verify.limit = *share;
+            return verifyWhite(common, verify);
+        });
+    sub->add_option("--limit", limit, "largest change that passes, such as 1%");
+}
+
+void Program::addMeasuring() {
     CLI::App* sub =
         command(app, "measure", "measure what lies under the rig", [this]() -> Result<void> {
             const Result<Effort> effortValue = parseEffort(effort);
             if (!effortValue) return effortValue.error();
             measure.effort = *effortValue;
+            if (Result<void> good = checkSampleName(measure.name); !good) return good;
             return daemon::measure(common, measure);
         });
     sub->add_option("name", measure.name, "the sample's name")->required();
     sub->add_option("--effort", effort, "draft, standard or reference");
     sub->add_option("--notes", measure.notes, "operator's notes, kept with the sample");
     sub->add_option("-o,--output", measure.output, "also write the .gonio here");
-    sub->add_option("--profile", measure.profile, "rig profile (TOML)");
+}
+
+void Program::addDaemon() {
+    command(app, "status", "the rig, the job that runs, the session, the calibrations", [this] {
+        return status(common);
+    });
+    command(app, "rigs", "the rigs that the daemon could use", [this] { return rigs(common); });
+    command(app, "samples", "the samples of the store", [this] { return samples(common); });
+    CLI::App* parent =
+        command(app, "jobs", "the newest jobs and how they ended", [this] { return jobs(common); });
+    command(*parent, "cancel", "end the job that runs", [this] { return cancelJob(common); });
+    CLI::App* sub = command(app, "watch", "print what happens, until Ctrl-C", [this] {
+        return daemon::watch(common, watch);
+    });
+    sub->add_option("--after", watch.after, "number of the event to begin after; default: now");
+}
+
+void Program::addSession() {
+    CLI::App* parent = app.add_subcommand("session", "a laboratory session, kept with its samples");
+    parent->require_subcommand(1);
+    parent->fallthrough();
+    CLI::App* sub =
+        command(*parent, "new", "open one", [this] { return newSession(common, session); });
+    sub->add_option("name", session.name, "its name; default: its date");
+    sub->add_option("--operator", session.operatorName, "who measures");
+    sub->add_option("--notes", session.notes, "anything");
+    command(*parent, "list", "all of them", [this] { return listSessions(common); });
+    command(
+        *parent, "close", "close the one that is open", [this] { return closeSession(common); });
 }
 
 void Program::addFiles() {
@@ -132,6 +193,13 @@ void Program::addFiles() {
         ->required();
     sub->add_option("--to", convert.to, "zemax, csv or gonio, where the extension does not tell");
 
+    sub = command(app, "export", "write a file in all formats, or some", [this] {
+        return exportTo(common, exported);
+    });
+    sub->add_option("file", exported.file, "a file, sample:NAME or model:SPEC")->required();
+    sub->add_option("-o,--output", exported.output, "folder")->required();
+    sub->add_option("--formats", exported.formats, "of gonio, zemax, csv, with commas");
+
     sub = command(app, "plot", "hemisphere maps and in-plane slices as SVG", [this] {
         return daemon::plot(common, plot);
     });
@@ -145,9 +213,14 @@ Program::Program() {
     app.add_flag("--json", common.json, "print JSON for machines");
     app.add_flag("-q,--quiet", common.quiet, "no progress bar");
     app.add_flag("-v,--verbose", verbose, "say on stderr what is done");
+    app.add_flag("-y,--yes", common.yes, "what a person is asked to do is done");
     app.add_option("--store", common.store, "folder of calibrations and samples");
+    app.add_option("--socket", common.socket, "where the daemon serves; default: in the store");
+    addDaemon();
+    addSession();
+    addCalibration();
+    addMeasuring();
     addSim();
-    addRig();
     addFiles();
 }
 
@@ -176,16 +249,21 @@ int run(int argc, char** argv) {
     if (program.verbose) log::setLevel(log::Level::Info);
     const Result<void> done = program.chosen();
     std::cout.flush();
-    if (done && std::cout) return 0;
+    if (done && std::cout) return interrupted() ? kInterrupted : 0;
     if (done) {
         std::cerr << "gonio: write to stdout: failed; is the disk full?\n";
         return exitCode(ErrorKind::File);
     }
     std::cerr << "gonio: " << done.error().message << "\n";
-    return exitCode(done.error().kind);
+    return interrupted() ? kInterrupted : exitCode(done.error().kind);
 }
 
 }  // namespace
+
+std::filesystem::path CommonOptions::socketPath() const {
+    return daemon::socketPath(socket, store.empty() ? defaultStore() : store);
+}
+
 }  // namespace gonio::daemon
 
 int main(int argc, char** argv) {

@@ -3,27 +3,34 @@
 
 #include <string>
 
-#include "proc/core/stopwatch.h"
+#include "proc/core/units.h"
 
 namespace gonio::daemon {
 
+struct ProgressStep {
+    int step = 0, steps = 1;
+    std::string what;
+    Seconds left{0};
+};
+
 class Progress {
 public:
-    /// `clock` must outlive the bar.
-    Progress(std::string title, int steps, const Clock& clock, bool wanted);
+    Progress(std::string title, bool wanted);
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
-    /// One more step is done.
-    void step(const std::string& what);
+    void show(const ProgressStep& now);
+    /// Another word for what is done, where no step is.
+    void show(const std::string& what);
+    /// Makes room for other text.
+    void clear();
 
 private:
     std::string title_;
-    int steps_;
-    int done_ = 0;
-    Stopwatch watch_;
-    bool shown_;
+    bool wanted_;
+    bool drawn_ = false;
+    ProgressStep last_;
 };
 
 }  // namespace gonio::daemon

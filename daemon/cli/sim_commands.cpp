@@ -1,15 +1,13 @@
-// The simulated rig's own door: what lies under it, and how far a measurement is from its truth.
+// How far a measurement of the simulated rig is from its truth.
 
 #include <algorithm>
-#include <cmath>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "daemon/cli/commands.h"
+#include "daemon/cli/output.h"
 #include "daemon/material.h"
 #include "daemon/score.h"
-#include "daemon/sim_bench.h"
-#include "daemon/store_lock.h"
 #include "proc/core/number_text.h"
 #include "proc/formats/file_bytes.h"
 #include "proc/formats/gonio_exr.h"
@@ -110,71 +108,7 @@ void printTable(const std::vector<Scored>& scored) {
     }
 }
 
-Result<void> check(const PlaceOptions& options) {
-    constexpr double kSteepest = 30;
-    constexpr std::size_t kLongestSerial = 32;
-    for (const double tilt : {options.tiltXDegrees, options.tiltYDegrees}) {
-        if (!(std::abs(tilt) <= kSteepest)) {
-            return Error{ErrorKind::Usage,
-                         "sim place: a tilt of " + shortest(tilt) + ", wanted -30 to 30 degrees"};
-        }
-        if (tilt != 0 && options.what != "mirror") {
-            return Error{ErrorKind::Usage, "sim place: only the mirror can be tilted"};
-        }
-    }
-    if (!options.serial) return {};
-    const std::string& serial = *options.serial;
-    const bool printable =
-        std::all_of(serial.begin(), serial.end(), [](char c) { return c > ' ' && c <= '~'; });
-    if (printable && !serial.empty() && serial.size() <= kLongestSerial) return {};
-    return Error{ErrorKind::Usage, "sim place: a serial is 1 to 32 printable characters"};
-}
-
-/// What will name the same thing from any folder, and after the store has changed.
-Result<std::string> lastingName(const std::string& what, Store& store) {
-    constexpr std::string_view kSample = "sample:";
-    if (isReference(what) || what.starts_with("model:")) return what;
-    if (!what.starts_with(kSample)) return fs::absolute(what).string();
-    const auto record = store.sample(what.substr(kSample.size()));
-    if (!record) return record.error();
-    return fs::absolute(record->file).string();
-}
-
 }  // namespace
-
-Result<void> simPlace(const CommonOptions& common, const PlaceOptions& options) {
-    if (Result<void> good = check(options); !good) return good;
-    Result<Store> store = Store::open(common.store);
-    if (!store) return store.error();
-    const Result<StoreLock> lock = StoreLock::take(store->root());
-    if (!lock) return lock.error();
-    Result<SimState> state = readSimState(*store);
-    if (!state) return state.error();
-    if (options.seed) state->seed = *options.seed;
-    if (options.serial) state->serial = *options.serial;
-    if (options.systematic) state->systematic = *options.systematic;
-    const Result<std::string> placed = lastingName(options.what, *store);
-    if (!placed) return placed.error();
-    state->placed = *placed;
-    state->wedge = {.aboutX = Radians::fromDegrees(options.tiltXDegrees),
-                    .aboutY = Radians::fromDegrees(options.tiltYDegrees)};
-    // Opening it now tells at once what is wrong with it.
-    const auto rig = openSim(*state, *store);
-    if (!rig) return rig.error();
-    if (Result<void> kept = writeSimState(*store, *state); !kept) return kept;
-    if (common.json) {
-        std::cout << Json{{"schema", "gonio/sim-place/1"},
-                          {"serial", state->serial},
-                          {"placed", options.what},
-                          {"tilt_x_deg", options.tiltXDegrees},
-                          {"tilt_y_deg", options.tiltYDegrees}}
-                         .dump(2, ' ', false, Json::error_handler_t::replace)
-                  << "\n";
-    } else if (!common.quiet) {
-        std::cout << "under the simulated rig " << state->serial << ": " << options.what << "\n";
-    }
-    return {};
-}
 
 Result<void> simScore(const CommonOptions& common, const ScoreOptions& options) {
     std::vector<Scored> scored;
@@ -184,7 +118,7 @@ Result<void> simScore(const CommonOptions& common, const ScoreOptions& options) 
         scored.push_back(std::move(*one));
     }
     if (common.json) {
-        std::cout << scoresOf(scored).dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
+        printJson(scoresOf(scored));
     } else {
         printTable(scored);
     }

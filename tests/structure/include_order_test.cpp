@@ -84,7 +84,8 @@ const std::vector<Wrapped> kWrapped{
     {std::regex("(OpenEXR/)?Imf.*|Imath/.*|Imath.*"), "proc/formats/"},
     {std::regex("libusb.*|hidapi.*"), "driver/"},
     {std::regex("sqlite3\\.h|httplib\\.h|systemd/.*"), "daemon/"},
-    {std::regex("(opencv2|nlohmann|CLI|toml\\+\\+|embree3)/.*"), ""},
+    // json_fwd.hpp declares names only.
+    {std::regex("(opencv2|CLI|toml\\+\\+|embree3)/.*|nlohmann/(?!json_fwd\\.hpp).*"), ""},
 };
 
 bool breaksWrapper(const std::string& file, const std::string& target) {

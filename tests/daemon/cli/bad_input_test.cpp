@@ -1,17 +1,15 @@
 // Bad input gets one clear line, the right exit code, in under a second and 100 MiB.
 
-#include <sys/file.h>
-
 #include <algorithm>
 
-#include "tests/daemon/cli/program.h"
+#include "tests/daemon/cli/running_daemon.h"
 
 namespace gonio {
 namespace {
 
 using test::Ran;
 
-constexpr int kUsage = 2, kBusy = 4, kFile = 6, kQuality = 7;
+constexpr int kUsage = 2, kNoRig = 3, kBusy = 4, kFile = 6, kQuality = 7;
 
 constexpr double kMebibytes = 100;
 constexpr double kSeconds = 1;
@@ -39,6 +37,12 @@ protected:
     }
 };
 
+/// With a daemon on the simulated rig.
+class BadInputAtDaemon : public BadInput {
+protected:
+    test::RunningDaemon daemon{gonio};
+};
+
 TEST_F(BadInput, MissingFileIsNamedByEveryCommandOnFiles) {
     const std::string missing = (gonio / "none.bsdf").string();
     const std::string points = file("points.csv", "theta_i,phi_i,theta_o,phi_o\n0,0,10,0\n");
@@ -46,7 +50,6 @@ TEST_F(BadInput, MissingFileIsNamedByEveryCommandOnFiles) {
     expectRefused(gonio({"eval", missing, "--points", points}), kFile, {missing});
     expectRefused(gonio({"convert", missing, (gonio / "o.csv").string()}), kFile, {missing});
     expectRefused(gonio({"plot", missing}), kFile, {missing});
-    expectRefused(gonio({"sim", "place", missing}), kFile, {missing});
     expectRefused(gonio({"sim", "score", missing}), kFile, {missing});
     expectRefused(gonio({"eval", kRealFile, "--points", missing}), kFile, {missing});
 }
@@ -121,7 +124,8 @@ TEST_F(BadInput, WrongCommandLinesAreUsageErrors) {
     expectRefused(gonio({"measure", "x", "--effort", "heroic"}), kUsage, {"heroic", "draft"});
     expectRefused(gonio({"measure", "../x"}), kUsage, {"../x"});
     expectRefused(gonio({"info", "sample:../../etc/passwd"}), kFile, {"no sample of this name"});
-    expectRefused(gonio({"sim", "place", "white", "--systematic", "some"}), kUsage, {"some"});
+    expectRefused(gonio({"verify-white", "--limit", "0.5"}), kUsage, {"--limit", "1%"});
+    expectRefused(gonio({"export", kRealFile, "-o", "x", "--formats", "doc"}), kUsage, {"doc"});
 }
 
 TEST_F(BadInput, UnknownFormatsAreNamed) {
@@ -139,15 +143,21 @@ TEST_F(BadInput, OutputThatCannotBeWrittenIsNamed) {
     expectRefused(ran, kFile, {nowhere});
 }
 
-TEST_F(BadInput, MeasuringBeforeCalibratingSaysWhatToRun) {
+TEST_F(BadInputAtDaemon, MeasuringBeforeCalibratingSaysWhatToRun) {
     ASSERT_EQ(gonio({"sim", "place", "model:lambert,albedo=0.5", "-q"}).exitCode, 0);
     expectRefused(gonio({"measure", "x"}), kQuality, {"gonio calibrate mirror"});
     expectRefused(gonio({"calibrate", "white"}), kQuality, {"gonio sim place white"});
     expectRefused(gonio({"calibrate", "black"}), kQuality, {"gonio sim place black"});
     expectRefused(gonio({"calibrate", "mirror"}), kQuality, {"gonio sim place mirror"});
+    expectRefused(gonio({"verify-white"}), kQuality, {"gonio sim place white"});
 }
 
-TEST_F(BadInput, PlacementsThatMakeNoSenseAreRefusedBeforeTheyAreKept) {
+TEST_F(BadInputAtDaemon, PlacementsThatMakeNoSenseAreRefusedBeforeTheyAreKept) {
+    const std::string missing = (gonio / "none.bsdf").string();
+    expectRefused(gonio({"sim", "place", missing}), kFile, {missing});
+    expectRefused(gonio({"sim", "place", "sample:none"}), kFile, {"sample:none"});
+    expectRefused(gonio({"sim", "place", "model:lambret"}), kUsage, {"lambret"});
+    expectRefused(gonio({"sim", "place", "white", "--systematic", "some"}), kUsage, {"some"});
     for (const std::string tilt : {"nan", "inf", "-90"}) {
         expectRefused(gonio({"sim", "place", "mirror", "--tilt=" + tilt}), kUsage, {"tilt"});
     }
@@ -159,6 +169,40 @@ TEST_F(BadInput, PlacementsThatMakeNoSenseAreRefusedBeforeTheyAreKept) {
     EXPECT_FALSE(std::filesystem::exists(gonio / "store/sim.json"));
 }
 
+TEST_F(BadInputAtDaemon, SessionsAndJobsThatAreNotThereAreSaid) {
+    expectRefused(gonio({"session", "close"}), kUsage, {"gonio session new"});
+    ASSERT_EQ(gonio({"session", "new", "one", "-q"}).exitCode, 0);
+    expectRefused(gonio({"session", "new", "two"}), kUsage, {"'one' is open"});
+    ASSERT_EQ(gonio({"session", "close", "-q"}).exitCode, 0);
+    expectRefused(gonio({"session", "new", "one"}), kUsage, {"'one'", "was used"});
+    expectRefused(gonio({"jobs", "cancel"}), kUsage, {"no job is running"});
+}
+
+TEST_F(BadInput, WithoutADaemonItIsSaidHowToStartOne) {
+    const std::string socket = (gonio / "store/goniod.sock").string();
+    const std::vector<std::vector<std::string>> commands{{"status"},
+                                                         {"rigs"},
+                                                         {"samples"},
+                                                         {"jobs"},
+                                                         {"watch"},
+                                                         {"measure", "x"},
+                                                         {"calibrate", "white"},
+                                                         {"verify-white"},
+                                                         {"session", "list"},
+                                                         {"sim", "place", "white"}};
+    for (const auto& command : commands) {
+        expectRefused(gonio(command), kNoRig, {socket, "goniod --rig sim"});
+    }
+}
+
+TEST_F(BadInputAtDaemon, ASecondDaemonOnTheStoreOrTheSocketIsRefused) {
+    expectRefused(gonio.daemon({"--rig", "sim"}), kBusy, {"another goniod", "store"});
+    const test::Program other;
+    const std::string socket = (gonio / "store/goniod.sock").string();
+    expectRefused(other.daemon({"--rig", "sim", "--socket", socket}), kBusy, {socket});
+    EXPECT_EQ(gonio({"status", "-q"}).exitCode, 0);  // the first serves on
+}
+
 TEST_F(BadInput, CommentThatIsNoUtf8IsShownAllTheSame) {
     const std::string latin = file("latin.bsdf", "# 20 \xB0 C\n" + test::textOf(kRealFile));
     const Ran plain = gonio({"info", latin});
@@ -168,28 +212,29 @@ TEST_F(BadInput, CommentThatIsNoUtf8IsShownAllTheSame) {
     EXPECT_NE(test::textOf(gonio / "out.bsdf").find("20 \xB0 C"), std::string::npos);
 }
 
-TEST_F(BadInput, RigOfAStoreIsForOneProcess) {
-    ASSERT_EQ(gonio({"sim", "place", "white", "-q"}).exitCode, 0);
-    const int held = ::open((gonio / "store/rig.lock").c_str(), O_RDWR);
-    ASSERT_EQ(::flock(held, LOCK_EX), 0);
-    expectRefused(gonio({"sim", "place", "black"}), kBusy, {"another gonio"});
-    expectRefused(gonio({"measure", "x"}), kBusy, {"another gonio"});
-    ::close(held);
-    EXPECT_EQ(gonio({"sim", "place", "black", "-q"}).exitCode, 0);
+TEST_F(BadInput, DaemonRefusesWhatItCannotBeTold) {
+    expectRefused(gonio.daemon({}), kUsage, {"--rig sim"});
+    expectRefused(gonio.daemon({"--rig", "usb3"}), kUsage, {"usb3", "usb:SERIAL"});
+    expectRefused(gonio.daemon({"--rig", "sim", "--socket", "/" + std::string(200, 'x')}),
+                  kUsage,
+                  {"--socket", "107 bytes"});
+    const std::string config = file("goniod.toml", "schema = \"gonio/goniod/1\"\nrigs = \"sim\"\n");
+    expectRefused(gonio.daemon({"--config", config}), kFile, {config, "'rigs'"});
 }
 
 TEST_F(BadInput, BrokenStoreIsNamed) {
-    ASSERT_EQ(gonio({"sim", "place", "white", "-q"}).exitCode, 0);
+    std::filesystem::create_directories(gonio / "store");
     test::writeText(gonio / "store/sim.json", "{\"schema\":\"gonio/sim/1\",\"serial\":7}");
-    expectRefused(gonio({"sim", "place", "white"}), kFile, {"sim.json"});
+    expectRefused(gonio.daemon({"--rig", "sim"}), kFile, {"sim.json"});
 }
 
 TEST_F(BadInput, BrokenProfileIsNamedWithItsKey) {
     const std::string profile = file("rig.toml", "name = \"x\"\n[sensor]\nelectrons_per_dn = -1\n");
-    expectRefused(
-        gonio({"measure", "x", "--profile", profile}), kFile, {profile, "sensor.electrons_per_dn"});
+    expectRefused(gonio.daemon({"--rig", "sim", "--profile", profile}),
+                  kFile,
+                  {profile, "sensor.electrons_per_dn"});
     const std::string torn = file("torn.toml", "name = \n");
-    expectRefused(gonio({"measure", "x", "--profile", torn}), kFile, {torn});
+    expectRefused(gonio.daemon({"--rig", "sim", "--profile", torn}), kFile, {torn});
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "tests/daemon/cli/program.h"
+#include "tests/daemon/cli/running_daemon.h"
 
 namespace gonio {
 namespace {
@@ -19,6 +19,7 @@ const std::vector<std::string> kSamples{
     "model:ggx,alpha=0.05,f0=0.9/0.7/0.4",
 };
 
+/// A lab: a daemon on the simulated rig, and its store.
 class Bench {
 public:
     /// Runs a command that must succeed; its JSON.
@@ -66,6 +67,7 @@ public:
     }
 
     Program program;
+    test::RunningDaemon daemon{program};
 
 private:
     void place(const std::string& what, const std::string& systematic, int seed) const {

@@ -1,0 +1,379 @@
+#include "daemon/api/api.h"
+
+#include <unistd.h>
+
+#include <array>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "daemon/api/documents.h"
+#include "daemon/exports.h"
+#include "daemon/problem.h"
+#include "proc/core/number_text.h"
+#include "proc/formats/file_bytes.h"
+
+namespace gonio::daemon {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kJobsListed = 100;
+constexpr int kMethodNotAllowed = 405;
+constexpr int kNotFound = 404;
+constexpr int kAccepted = 202;
+
+int httpStatus(ErrorKind kind) {
+    switch (kind) {
+        case ErrorKind::Internal: return 500;
+        case ErrorKind::Usage: return 400;
+        case ErrorKind::NoRig: return 503;
+        case ErrorKind::Busy: return 409;
+        case ErrorKind::Device: return 502;
+        case ErrorKind::File: return 404;
+        case ErrorKind::Quality: return 422;
+        case ErrorKind::Interrupted: return 409;
+    }
+    return 500;
+}
+
+ApiReply problemReply(int status, std::string_view type, const std::string& detail) {
+    const Json json{{"type", "urn:gonio:problem:" + std::string(type)},
+                    {"title", std::string(type)},
+                    {"status", status},
+                    {"detail", detail}};
+    return {.status = status,
+            .type = "application/problem+json",
+            .body = json.dump(-1, ' ', false, Json::error_handler_t::replace)};
+}
+
+/// Members of a request's body; remembers the first that is of the wrong kind.
+class Fields {
+public:
+    explicit Fields(const std::string& body) {
+        json_ = body.empty() ? Json::object() : Json::parse(body, nullptr, false);
+        if (!json_.is_object()) complain("the body is not a JSON object");
+    }
+    std::string text(const std::string& name, bool needed = false) {
+        return take<std::string>(name, &Json::is_string, "a text", needed).value_or("");
+    }
+    std::optional<double> number(const std::string& name) {
+        return take<double>(name, &Json::is_number, "a number", false);
+    }
+    std::optional<std::uint64_t> whole(const std::string& name) {
+        return take<std::uint64_t>(name, &Json::is_number_unsigned, "a whole number", false);
+    }
+    std::optional<std::string> optionalText(const std::string& name) {
+        return take<std::string>(name, &Json::is_string, "a text", false);
+    }
+    /// Of a body that was read whole: what nobody asked for is a mistake of the sender.
+    [[nodiscard]] Result<void> verdict() const {
+        if (!wrong_.empty()) return Error{ErrorKind::Usage, wrong_};
+        for (const auto& [name, value] : json_.items()) {
+            if (!known_.contains(name)) {
+                return Error{ErrorKind::Usage, "unknown member '" + name + "'"};
+            }
+        }
+        return {};
+    }
+
+private:
+    template <class T>
+    std::optional<T> take(const std::string& name,
+                          bool (Json::*fits)() const,
+                          const std::string& wanted,
+                          bool needed) {
+        known_.emplace(name, true);
+        if (!json_.is_object()) return std::nullopt;
+        const auto found = json_.find(name);
+        const bool absent = found == json_.end() || found->is_null();
+        if (absent && !needed) return std::nullopt;
+        if (absent || !((*found).*fits)()) {
+            complain("member '" + name + "': wanted " + wanted);
+            return std::nullopt;
+        }
+        return found->template get<T>();
+    }
+    void complain(const std::string& what) {
+        if (wrong_.empty()) wrong_ = what;
+    }
+    Json json_;
+    std::map<std::string, bool> known_;
+    std::string wrong_;
+};
+
+struct Call {
+    Engine& engine;
+    const ApiRequest& request;
+    std::vector<std::string> names;  ///< what stood where the route has a '*'
+};
+
+using Handler = Result<ApiReply> (*)(const Call&);
+
+ApiReply reply(const std::string& schema, Json content, int status = 200) {
+    return {.status = status, .body = document(schema, std::move(content))};
+}
+
+template <class Record>
+Json listed(const std::vector<Record>& records) {
+    Json list = Json::array();
+    for (const Record& record : records) list.push_back(toJson(record));
+    return list;
+}
+
+/// What is kept is read over a connection of the reader's own; the writer is not disturbed.
+Result<Store> reading(const Call& call) { return Store::open(call.engine.storeRoot()); }
+Result<Logbook> logbook(const Call& call) { return Logbook::open(call.engine.storeRoot()); }
+
+Result<std::int64_t> jobNumber(const Call& call) {
+    const auto number = parseInteger(call.names.front());
+    if (!number) return Error{ErrorKind::Usage, "job '" + call.names.front() + "': not a number"};
+    return *number;
+}
+
+// ---- what there is ----
+
+Result<ApiReply> getStatus(const Call& call) {
+    Json json = toJson(call.engine.status());
+    json["daemon"] = {{"version", GONIO_VERSION},
+                      {"pid", ::getpid()},
+                      {"store", call.engine.storeRoot().string()},
+                      {"profile", call.engine.profile().name},
+                      {"newest_event", call.engine.events().newest()}};
+    return reply("status", std::move(json));
+}
+
+Result<ApiReply> getRigs(const Call& call) {
+    const auto rigs = call.engine.rigs();
+    if (!rigs) return rigs.error();
+    return reply("rigs", {{"rigs", listed(*rigs)}});
+}
+
+Result<ApiReply> getSamples(const Call& call) {
+    Result<Store> store = reading(call);
+    if (!store) return store.error();
+    const auto samples = store->samples();
+    if (!samples) return samples.error();
+    return reply("samples", {{"samples", listed(*samples)}});
+}
+
+Result<SampleRecord> sampleOf(const Call& call) {
+    Result<Store> store = reading(call);
+    if (!store) return store.error();
+    return store->sample(call.names.front());
+}
+
+Result<ApiReply> fileReply(const std::filesystem::path& file, const std::string& type) {
+    Result<std::string> bytes = proc::readFile(file);
+    if (!bytes) return bytes.error();
+    return ApiReply{.type = type, .body = std::move(*bytes)};
+}
+
+constexpr const char* kBytes = "application/octet-stream";
+
+Result<ApiReply> getSampleFile(const Call& call) {
+    const auto sample = sampleOf(call);
+    if (!sample) return sample.error();
+    return fileReply(sample->file, kBytes);
+}
+
+Result<ApiReply> getSampleRaw(const Call& call) {
+    const auto sample = sampleOf(call);
+    if (!sample) return sample.error();
+    return fileReply(sample->raw, kBytes);
+}
+
+/// The band that ?band= names, which a format with one file for each needs.
+Result<std::optional<Band>> wantedBand(const Call& call, ExportFormat format) {
+    const auto asked = call.request.query.find("band");
+    if (asked != call.request.query.end()) {
+        for (Band band : kBands) {
+            if (letter(band) == asked->second) return std::optional(band);
+        }
+    }
+    if (format != ExportFormat::Zemax && asked == call.request.query.end()) {
+        return std::optional<Band>();
+    }
+    return Error{ErrorKind::Usage, "zemax holds one band: wanted ?band=r, g or b"};
+}
+
+Result<ApiReply> getSampleExport(const Call& call) {
+    const auto format = parseExportFormat(call.names.back());
+    if (!format) return format.error();
+    const auto band = wantedBand(call, *format);
+    if (!band) return band.error();
+    const auto surface = openMaterial("sample:" + call.names.front(), call.engine.storeRoot());
+    if (!surface) return surface.error();
+    auto files = exportAs(*surface, *format, *band);
+    if (!files) return files.error();
+    return ApiReply{.type = kBytes, .body = std::move(files->front().bytes)};
+}
+
+Result<ApiReply> getJobs(const Call& call) {
+    Result<Logbook> book = logbook(call);
+    if (!book) return book.error();
+    const auto jobs = book->jobs(kJobsListed);
+    if (!jobs) return jobs.error();
+    return reply("jobs", {{"jobs", listed(*jobs)}});
+}
+
+Result<ApiReply> getJob(const Call& call) {
+    const auto number = jobNumber(call);
+    if (!number) return number.error();
+    Result<Logbook> book = logbook(call);
+    if (!book) return book.error();
+    const auto job = book->job(*number);
+    if (!job) return problemReply(kNotFound, "usage", job.error().message);
+    return reply("job", toJson(*job));
+}
+
+Result<ApiReply> getSessions(const Call& call) {
+    Result<Logbook> book = logbook(call);
+    if (!book) return book.error();
+    const auto sessions = book->sessions();
+    if (!sessions) return sessions.error();
+    return reply("sessions", {{"sessions", listed(*sessions)}});
+}
+
+// ---- what is done ----
+
+Result<ApiReply> postJob(const Call& call) {
+    Fields fields(call.request.body);
+    const Result<JobKind> kind = parseJobKind(fields.text("kind", true));
+    const std::optional<std::string> effortName = fields.optionalText("effort");
+    JobRequest job{.name = fields.text("name"), .notes = fields.text("notes")};
+    job.limit = fields.number("limit").value_or(job.limit);
+    if (Result<void> good = fields.verdict(); !good) return good.error();
+    if (!kind) return kind.error();
+    job.kind = *kind;
+    if (effortName) {
+        const Result<Effort> effort = parseEffort(*effortName);
+        if (!effort) return effort.error();
+        job.effort = *effort;
+    }
+    const Result<JobRecord> begun = call.engine.submit(job);
+    if (!begun) return begun.error();
+    return reply("job", toJson(*begun), kAccepted);
+}
+
+Result<ApiReply> postJobWish(const Call& call, Result<void> (Engine::*wish)(std::int64_t)) {
+    const auto number = jobNumber(call);
+    if (!number) return number.error();
+    if (Result<void> done = (call.engine.*wish)(*number); !done) return done.error();
+    return reply("job-wish", {{"id", *number}}, kAccepted);
+}
+Result<ApiReply> postCancel(const Call& call) { return postJobWish(call, &Engine::cancel); }
+Result<ApiReply> postProceed(const Call& call) { return postJobWish(call, &Engine::proceed); }
+
+Result<ApiReply> postSession(const Call& call) {
+    Fields fields(call.request.body);
+    const SessionRecord session{.name = fields.text("name"),
+                                .operatorName = fields.text("operator"),
+                                .notes = fields.text("notes")};
+    if (Result<void> good = fields.verdict(); !good) return good.error();
+    const auto opened = call.engine.openSession(session);
+    if (!opened) return opened.error();
+    return reply("session", toJson(*opened));
+}
+
+Result<ApiReply> postSessionClose(const Call& call) {
+    const auto closed = call.engine.closeSession();
+    if (!closed) return closed.error();
+    return reply("session", toJson(*closed));
+}
+
+Result<ApiReply> postPlace(const Call& call) {
+    Fields fields(call.request.body);
+    const PlaceRequest place{.what = fields.text("what", true),
+                             .tiltXDegrees = fields.number("tilt_x_deg").value_or(0),
+                             .tiltYDegrees = fields.number("tilt_y_deg").value_or(0),
+                             .seed = fields.whole("seed"),
+                             .serial = fields.optionalText("serial"),
+                             .systematic = fields.optionalText("systematic")};
+    if (Result<void> good = fields.verdict(); !good) return good.error();
+    if (Result<void> done = call.engine.place(place); !done) return done.error();
+    return reply("sim-place",
+                 {{"serial", call.engine.status().serial},
+                  {"placed", place.what},
+                  {"tilt_x_deg", place.tiltXDegrees},
+                  {"tilt_y_deg", place.tiltYDegrees}});
+}
+
+struct Route {
+    std::string_view method;
+    std::string_view path;  ///< '*' stands for one name
+    Handler handler;
+};
+
+constexpr std::array kRoutes{
+    Route{"GET", "/api/v1/status", getStatus},
+    Route{"GET", "/api/v1/rigs", getRigs},
+    Route{"GET", "/api/v1/sessions", getSessions},
+    Route{"POST", "/api/v1/sessions", postSession},
+    Route{"POST", "/api/v1/sessions/close", postSessionClose},
+    Route{"GET", "/api/v1/jobs", getJobs},
+    Route{"POST", "/api/v1/jobs", postJob},
+    Route{"GET", "/api/v1/jobs/*", getJob},
+    Route{"POST", "/api/v1/jobs/*/cancel", postCancel},
+    Route{"POST", "/api/v1/jobs/*/proceed", postProceed},
+    Route{"GET", "/api/v1/samples", getSamples},
+    Route{"GET", "/api/v1/samples/*/file", getSampleFile},
+    Route{"GET", "/api/v1/samples/*/raw", getSampleRaw},
+    Route{"GET", "/api/v1/samples/*/exports/*", getSampleExport},
+    Route{"POST", "/api/v1/sim/place", postPlace},
+};
+
+std::vector<std::string_view> parts(std::string_view path) {
+    std::vector<std::string_view> list;
+    while (!path.empty()) {
+        const std::size_t slash = path.find('/', 1);
+        list.push_back(path.substr(0, slash));
+        path = slash == std::string_view::npos ? std::string_view() : path.substr(slash);
+    }
+    return list;
+}
+
+/// The names of a path that fits the pattern.
+std::optional<std::vector<std::string>> match(std::string_view pattern, std::string_view path) {
+    const auto wanted = parts(pattern);
+    const auto seen = parts(path);
+    if (wanted.size() != seen.size()) return std::nullopt;
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+        if (wanted[i] == "/*" && seen[i].size() > 1) {
+            names.emplace_back(seen[i].substr(1));
+        } else if (wanted[i] != seen[i]) {
+            return std::nullopt;
+        }
+    }
+    return names;
+}
+
+bool saysJson(const std::string& contentType) {
+    return contentType.substr(0, contentType.find(';')) == "application/json";
+}
+
+}  // namespace
+
+ApiReply problem(const Error& error) {
+    return problemReply(httpStatus(error.kind), problemName(error.kind), error.message);
+}
+
+ApiReply Api::handle(const ApiRequest& request) const {
+    bool known = false;
+    for (const Route& route : kRoutes) {
+        auto names = match(route.path, request.path);
+        if (!names) continue;
+        known = true;
+        if (route.method != request.method) continue;
+        if (request.method == "POST" && !saysJson(request.contentType)) {
+            return problemReply(415, "usage", "wanted Content-Type: application/json");
+        }
+        const Result<ApiReply> answer = route.handler({engine_, request, std::move(*names)});
+        return answer ? *answer : problem(answer.error());
+    }
+    if (known) return problemReply(kMethodNotAllowed, "usage", request.method + ": not here");
+    return problemReply(kNotFound, "usage", request.path + ": there is no such thing");
+}
+
+}  // namespace gonio::daemon

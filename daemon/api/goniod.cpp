@@ -1,0 +1,147 @@
+// The daemon: owns one rig and one store, and serves them at a UNIX socket until SIGTERM or SIGINT,
+// then ends with the LEDs dark.
+
+#include <systemd/sd-daemon.h>
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <ctime>
+#include <iostream>
+#include <memory>
+#include <random>
+#include <thread>
+
+#include "daemon/api/http_server.h"
+#include "daemon/api/options.h"
+#include "daemon/api/socket_path.h"
+#include "daemon/engine/usb_port.h"
+#include "driver/steady_clock.h"
+#include "proc/core/log.h"
+
+namespace gonio::daemon {
+namespace {
+
+std::string utcNow() {
+    const std::time_t now = std::time(nullptr);
+    std::tm utc{};
+    gmtime_r(&now, &utc);
+    char text[32];
+    return {text, std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc)};
+}
+
+/// PROTOCOL.md 2: random, its low half not 0.
+std::uint64_t randomClaim() {
+    std::random_device device;
+    const std::uint64_t high = device();
+    return high << 32 | std::max(1U, device());
+}
+
+/// The end of the program comes as a signal to one thread that waits for it; the others never see
+/// one.
+sigset_t blockSignals() {
+    std::signal(SIGPIPE, SIG_IGN);  // a client that went away is an error of a write
+    sigset_t signals;
+    sigemptyset(&signals);
+    sigaddset(&signals, SIGTERM);
+    sigaddset(&signals, SIGINT);
+    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+    return signals;
+}
+
+Result<std::unique_ptr<RigPort>> openPort(const std::string& rig,
+                                          const std::filesystem::path& store) {
+    const Result<RigChoice> choice = parseRigChoice(rig);
+    if (!choice) return choice.error();
+    if (!choice->simulated) {
+        return std::unique_ptr<RigPort>(
+            std::make_unique<UsbPort>(driver::UsbSelection{.serial = choice->serial}));
+    }
+    Result<std::unique_ptr<SimPort>> sim = SimPort::open(store);
+    if (!sim) return sim.error();
+    return std::unique_ptr<RigPort>(std::move(*sim));
+}
+
+Result<void> serve(const DaemonOptions& options) {
+    const sigset_t signals = blockSignals();
+    const auto store = options.store.empty() ? defaultStore() : options.store;
+    const auto socket = socketPath(options.socket, store);
+    if (Result<void> good = checkSocketPath(socket); !good) return good;
+    Result<RigProfile> profile =
+        readProfile(options.profile.empty() ? defaultProfile() : options.profile);
+    if (!profile) return profile.error();
+    Result<std::unique_ptr<RigPort>> port = openPort(options.rig, store);
+    if (!port) return port.error();
+    const driver::SteadyClock clock;
+    Result<std::unique_ptr<Engine>> engine =
+        Engine::open(store,
+                     **port,
+                     std::move(*profile),
+                     {.clock = clock, .utcNow = utcNow, .randomId = randomClaim, .alive = [] {
+                          sd_notify(0, "WATCHDOG=1");
+                      }});
+    if (!engine) return engine.error();
+    auto server = HttpServer::open(socket, **engine);
+    if (!server) return server.error();
+    std::jthread owner([&](const std::stop_token& stop) { (*engine)->run(stop); });
+    log::info("serving at " + socket.string());
+    sd_notify(0, "READY=1");
+    int signal = 0;
+    sigwait(&signals, &signal);
+    sd_notify(0, "STOPPING=1");
+    log::info("ending");
+    owner.request_stop();
+    owner.join();
+    return {};
+}
+
+struct Arguments {
+    CLI::App app{"goniod: owns a rig and its store, and serves them at a UNIX socket", "goniod"};
+    DaemonOptions options;
+    std::filesystem::path config;
+    bool verbose = false;
+
+    Arguments() {
+        app.set_version_flag("--version", GONIO_VERSION);
+        app.add_option("--rig", options.rig, "sim, usb or usb:SERIAL");
+        app.add_option("--store", options.store, "folder of calibrations and samples");
+        app.add_option("--socket", options.socket, "where to serve; goniod.sock in the store");
+        app.add_option("--profile", options.profile, "rig profile (TOML)");
+        app.add_option("--config", config, "goniod.toml, for what the options above do not say");
+        app.add_flag("-v,--verbose", verbose, "say on stderr what is done");
+    }
+};
+
+int run(int argc, char** argv) {
+    Arguments arguments;
+    try {
+        arguments.app.parse(argc, argv);
+    } catch (const CLI::Success& success) {
+        return arguments.app.exit(success);
+    } catch (const CLI::ParseError& error) {
+        std::cerr << "goniod: " << error.what() << "; see goniod --help\n";
+        return exitCode(ErrorKind::Usage);
+    }
+    if (arguments.verbose) log::setLevel(log::Level::Info);
+    Result<void> done;
+    if (arguments.config.empty()) {
+        done = serve(arguments.options);
+    } else {
+        const Result<DaemonOptions> file = readDaemonOptions(arguments.config);
+        done = file ? serve(overlaid(arguments.options, *file)) : file.error();
+    }
+    if (done) return 0;
+    std::cerr << "goniod: " << done.error().message << "\n";
+    return exitCode(done.error().kind);
+}
+
+}  // namespace
+}  // namespace gonio::daemon
+
+int main(int argc, char** argv) {
+    try {
+        return gonio::daemon::run(argc, argv);
+    } catch (const std::exception& error) {
+        std::cerr << "goniod: internal error: " << error.what() << "\n";
+        return 1;
+    }
+}

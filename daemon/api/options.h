@@ -1,0 +1,34 @@
+#pragma once
+// What a daemon is told: by its configuration file (goniod.toml), and over that by its command
+// line.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "proc/core/result.h"
+
+namespace gonio::daemon {
+
+/// Empty members have not been told.
+struct DaemonOptions {
+    std::string rig;  ///< "sim", "usb" or "usb:SERIAL"
+    std::filesystem::path store;
+    std::filesystem::path socket;
+    std::filesystem::path profile;
+};
+
+/// Keys rig, store, socket, profile, all optional. File error that names the file and the key.
+[[nodiscard]] Result<DaemonOptions> readDaemonOptions(const std::filesystem::path& file);
+
+/// Each member of `first`; where that is empty, of `second`.
+[[nodiscard]] DaemonOptions overlaid(DaemonOptions first, const DaemonOptions& second);
+
+/// "usb:SERIAL" -> SERIAL. Usage error unless `rig` is sim, usb or usb:SERIAL.
+struct RigChoice {
+    bool simulated = false;
+    std::optional<std::string> serial{};
+};
+[[nodiscard]] Result<RigChoice> parseRigChoice(const std::string& rig);
+
+}  // namespace gonio::daemon

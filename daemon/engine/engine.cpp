@@ -1,0 +1,520 @@
+#include "daemon/engine/engine.h"
+
+#include <nlohmann/json.hpp>
+
+#include "proc/core/log.h"
+#include "proc/core/number_text.h"
+
+namespace gonio::daemon {
+namespace {
+
+using namespace std::chrono_literals;
+using Json = nlohmann::ordered_json;
+
+constexpr auto kPause = 250ms;          // between two looks at an idle rig: heartbeat / 8
+constexpr Nanoseconds kRescan = 500ms;  // PROTOCOL.md 4
+constexpr Nanoseconds kRetryHeld = 2s;  // held by another, or no permission
+constexpr std::uint64_t kReservedSteps = 1 << 16;  // no job takes more captures
+
+std::string dump(const Json& json) {
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+Error stopping() { return {ErrorKind::Busy, "the daemon is stopping"}; }
+Error cancelled(const std::string& job) { return {ErrorKind::Interrupted, job + ": cancelled"}; }
+
+}  // namespace
+
+// ---- the job that runs ----
+
+/// Tells everyone how the job at hand goes on, and the job when it has to end.
+class Engine::Monitor : public JobMonitor {
+public:
+    Monitor(Engine& engine, const std::stop_token& stop, std::string job)
+        : engine_(engine), stop_(stop), job_(std::move(job)), watch_(engine.world_.clock) {}
+
+    void begin(int steps) override {
+        engine_.publish([&](EngineStatus& status) { status.job->steps = steps; });
+    }
+    Result<void> step(const std::string& what) override {
+        engine_.world_.alive();
+        tell(what);
+        if (!wished()) return {};
+        ended_ = true;
+        return cancelled(job_);
+    }
+    Result<void> ask(const std::string& what) override;
+    void captured() override { engine_.advance(EngineEvent::Captured); }
+
+    /// How a job that did not succeed has ended.
+    [[nodiscard]] JobState verdict() const {
+        if (!ended_) return JobState::Failed;
+        return stop_.stop_requested() ? JobState::Interrupted : JobState::Cancelled;
+    }
+
+private:
+    void tell(const std::string& what);
+    [[nodiscard]] bool wished() const {
+        const std::scoped_lock lock(engine_.mutex_);
+        return stop_.stop_requested() || engine_.wish_ == Wish::Cancel;
+    }
+    void prompt(const std::string& what) {
+        engine_.publish([&](EngineStatus& status) { status.job->prompt = what; });
+    }
+
+    Engine& engine_;
+    const std::stop_token& stop_;
+    std::string job_;
+    Stopwatch watch_;
+    bool ended_ = false;
+};
+
+void Engine::Monitor::tell(const std::string& what) {
+    JobStatus now;
+    engine_.publish([&](EngineStatus& status) {
+        JobStatus& job = *status.job;
+        job.step = std::min(job.step + 1, job.steps);
+        job.what = what;
+        job.elapsed = watch_.elapsed();
+        job.left = job.elapsed * (job.steps - job.step) / std::max(1, job.step);
+        now = job;
+    });
+    engine_.tell("progress",
+                 dump({{"job", now.record.id},
+                       {"step", now.step},
+                       {"steps", now.steps},
+                       {"what", what},
+                       {"elapsed_s", now.elapsed.count()},
+                       {"left_s", now.left->count()}}),
+                 false);
+}
+
+Result<void> Engine::Monitor::ask(const std::string& what) {
+    prompt(what);
+    std::int64_t job = 0;
+    {
+        const std::scoped_lock lock(engine_.mutex_);
+        engine_.wish_ = engine_.wish_ == Wish::Cancel ? Wish::Cancel : Wish::None;
+        job = *engine_.running_;
+    }
+    engine_.tell("operator", dump({{"job", job}, {"wanted", what}}), true);
+    while (true) {
+        engine_.world_.alive();
+        if (Result<void> there = engine_.rig_->keepAlive(); !there) return there;
+        std::unique_lock lock(engine_.mutex_);
+        engine_.asked_.wait_for(lock, kPause, [&] { return engine_.wish_ != Wish::None; });
+        if (stop_.stop_requested() || engine_.wish_ == Wish::Cancel) {
+            ended_ = true;
+            return cancelled(job_);
+        }
+        if (engine_.wish_ == Wish::Proceed) {
+            engine_.wish_ = Wish::None;
+            lock.unlock();
+            prompt({});
+            return {};
+        }
+    }
+}
+
+// ---- asking the owner ----
+
+/// Waits for the owner to do `work`. Busy while a job runs: the owner would not come to it.
+template <class T>
+Result<T> Engine::ask(std::function<Result<T>()> work) {
+    auto answer = std::make_shared<std::promise<Result<T>>>();  // shared: std::function copies
+    auto future = answer->get_future();
+    {
+        const std::scoped_lock lock(mutex_);
+        if (ended_) return stopping();
+        if (busy_) {
+            const std::string job = status_.job ? status_.job->record.kind : "a job";
+            const std::string name = status_.job ? status_.job->record.name : "";
+            return Error{ErrorKind::Busy,
+                         "the rig is busy with " + job + (name.empty() ? "" : " " + name) +
+                             "; wait until it is done, or end it: gonio jobs cancel"};
+        }
+        mailbox_.push_back([answer, work = std::move(work)](bool served) {
+            answer->set_value(served ? work() : stopping());
+        });
+    }
+    asked_.notify_all();
+    return future.get();
+}
+
+void Engine::serveNext() {
+    std::function<void(bool)> next;
+    {
+        std::unique_lock lock(mutex_);
+        asked_.wait_for(lock, kPause, [&] { return !mailbox_.empty(); });
+        if (mailbox_.empty()) return;
+        next = std::move(mailbox_.front());
+        mailbox_.pop_front();
+    }
+    next(true);
+}
+
+void Engine::refuseAll() {
+    std::deque<std::function<void(bool)>> left;
+    {
+        const std::scoped_lock lock(mutex_);
+        ended_ = true;
+        left.swap(mailbox_);
+    }
+    for (const auto& mail : left) mail(false);
+}
+
+Result<JobRecord> Engine::submit(const JobRequest& request) {
+    if (Result<void> good = check(request); !good) return good.error();
+    return ask<JobRecord>([this, request] { return begin(request); });
+}
+
+Result<JobRecord> Engine::begin(const JobRequest& request) {
+    if (pending_) return Error{ErrorKind::Busy, "another job was quicker; wait until it is done"};
+    const EngineState state = status().state;
+    if (state != EngineState::Idle) {
+        return Error{state == EngineState::Fault ? ErrorKind::Device : ErrorKind::NoRig,
+                     "the rig is " + std::string(name(state)) +
+                         (lastObstacle_.empty() ? "" : ": " + lastObstacle_)};
+    }
+    Result<JobRecord> record = logbook_.beginJob({.kind = std::string(name(request.kind)),
+                                                  .name = request.name,
+                                                  .startedUtc = world_.utcNow()});
+    if (!record) return record;
+    pending_ = Pending{request, *record};
+    {
+        const std::scoped_lock lock(mutex_);
+        busy_ = true;
+        running_ = record->id;
+        wish_ = Wish::None;
+        status_.job = JobStatus{.record = *record};
+    }
+    tellJob(*record);
+    return record;
+}
+
+Result<void> Engine::cancel(std::int64_t job) {
+    {
+        const std::scoped_lock lock(mutex_);
+        if (running_ != job) {
+            return Error{ErrorKind::Usage, "job " + std::to_string(job) + " is not running"};
+        }
+        wish_ = Wish::Cancel;
+    }
+    asked_.notify_all();
+    return {};
+}
+
+Result<void> Engine::proceed(std::int64_t job) {
+    {
+        const std::scoped_lock lock(mutex_);
+        if (running_ != job || !status_.job || status_.job->prompt.empty()) {
+            return Error{ErrorKind::Usage, "job " + std::to_string(job) + " waits for nobody"};
+        }
+        if (wish_ == Wish::None) wish_ = Wish::Proceed;
+    }
+    asked_.notify_all();
+    return {};
+}
+
+Result<SessionRecord> Engine::openSession(const SessionRecord& session) {
+    return ask<SessionRecord>([this, wanted = SessionRecord(session)]() mutable {
+        wanted.openedUtc = world_.utcNow();
+        Result<SessionRecord> opened = logbook_.openSession(std::move(wanted));
+        if (!opened) return opened;
+        publish([&](EngineStatus& status) { status.session = *opened; });
+        tell("session", dump({{"name", opened->name}, {"open", true}}), true);
+        return opened;
+    });
+}
+
+Result<SessionRecord> Engine::closeSession() {
+    return ask<SessionRecord>([this] {
+        Result<SessionRecord> closed = logbook_.closeSession(world_.utcNow());
+        if (!closed) return closed;
+        publish([](EngineStatus& status) { status.session.reset(); });
+        tell("session", dump({{"name", closed->name}, {"open", false}}), true);
+        return closed;
+    });
+}
+
+Result<void> Engine::place(const PlaceRequest& request) {
+    SimPort* sim = port_.simulated();
+    if (sim == nullptr) {
+        return Error{ErrorKind::Usage, "sim place: the rig is real; place it by hand"};
+    }
+    return ask<void>([this, sim, request]() -> Result<void> {
+        const Result<bool> another = sim->place(request);
+        if (!another) return another.error();
+        tell("placed", dump({{"what", sim->placed()}}), true);
+        publish([&](EngineStatus& status) { status.placed = sim->placed(); });
+        if (!*another) return {};
+        disconnect();
+        advance(EngineEvent::Lost, "another simulated rig was chosen");
+        connect();
+        return {};
+    });
+}
+
+EngineStatus Engine::status() const {
+    const std::scoped_lock lock(mutex_);
+    return status_;
+}
+
+// ---- what the owner tells ----
+
+template <class Change>
+void Engine::publish(Change change) {
+    const std::scoped_lock lock(mutex_);
+    change(status_);
+}
+
+void Engine::publishCalibrations() {
+    std::vector<CalibrationDate> dates;
+    for (const std::string kind : {"mirror", "black", "white"}) {
+        const auto newest = store_.newestCalibration(status().serial, kind);
+        if (newest && *newest) dates.push_back({kind, (*newest)->dateUtc});
+    }
+    publish([&](EngineStatus& status) { status.calibrations = std::move(dates); });
+}
+
+/// A kept event is in the logbook before anyone hears of it.
+void Engine::tell(const std::string& type, const std::string& json, bool kept) {
+    EventRecord event{.dateUtc = world_.utcNow(), .type = type, .data = json};
+    if (kept) {
+        event.id = events_.newest() + 1;  // this thread alone adds
+        if (Result<void> done = logbook_.addEvent(event); !done) log::error(done.error().message);
+    }
+    events_.add(std::move(event));
+}
+
+void Engine::tellJob(const JobRecord& job) {
+    Json json{{"job", job.id},
+              {"kind", job.kind},
+              {"name", job.name},
+              {"state", std::string(name(job.state))}};
+    if (job.error) json["message"] = job.error->message;
+    tell("job", dump(json), true);
+}
+
+void Engine::advance(EngineEvent event, const std::string& detail) {
+    const auto to = next(status().state, event);
+    if (!to) return;
+    publish([&](EngineStatus& status) { status.state = *to; });
+    tell("rig",
+         dump({{"state", std::string(name(*to))}, {"serial", status().serial}, {"detail", detail}}),
+         *to != EngineState::Running && *to != EngineState::Finishing);
+}
+
+// ---- the rig ----
+
+void Engine::connect() {
+    if (rig_ || world_.clock.now() < nextTry_) return;
+    const Result<void> claimed = claim();
+    if (claimed) return;
+    const Error& why = claimed.error();
+    disconnect();
+    advance(EngineEvent::Lost, why.message);
+    nextTry_ = world_.clock.now() + (why.kind == ErrorKind::Busy ? kRetryHeld : kRescan);
+    if (why.message != lastObstacle_) log::warning(why.message);
+    lastObstacle_ = why.message;
+    publish([&](EngineStatus& status) { status.obstacle = why.message; });
+}
+
+Result<void> Engine::claim() {
+    const Result<driver::Transport*> transport = port_.open();
+    if (!transport) return transport.error();
+    const std::string serial = (*transport)->strings().serial;
+    publish([&](EngineStatus& status) {
+        status.serial = serial;
+        status.placed = port_.placed();
+    });
+    advance(EngineEvent::Appeared);
+    // The same number again takes up the claim of a daemon that was killed a moment ago.
+    const std::string key = "claim/" + serial;
+    const Result<std::string> kept = logbook_.setting(key);
+    if (!kept) return kept.error();
+    std::uint64_t id = static_cast<std::uint64_t>(parseInteger(*kept).value_or(0));
+    if (id == 0) {
+        id = world_.randomId();
+        const auto set = logbook_.set(key, std::to_string(static_cast<std::int64_t>(id)));
+        if (!set) return set;
+    }
+    auto rig = driver::Rig::open(**transport, id);
+    if (!rig) return rig.error();
+    rig_.emplace(std::move(*rig));
+    lastObstacle_.clear();
+    publish([](EngineStatus& status) { status.obstacle.clear(); });
+    publishCalibrations();
+    advance(EngineEvent::Claimed);
+    log::info("rig " + serial + " is claimed");
+    return {};
+}
+
+void Engine::disconnect() {
+    rig_.reset();
+    port_.close();
+    publish([](EngineStatus& status) { status.rig.reset(); });
+}
+
+void Engine::lost(const Error& why) {
+    log::warning(why.message);
+    lastObstacle_ = why.message;
+    disconnect();
+    advance(EngineEvent::Lost, why.message);
+    publish([&](EngineStatus& status) { status.obstacle = why.message; });
+    nextTry_ = world_.clock.now() + kRescan;
+}
+
+/// Feeds the heartbeat, and follows what the rig says of itself.
+void Engine::tend() {
+    if (!rig_) return connect();
+    if (Result<void> there = rig_->keepAlive(); !there) return lost(there.error());
+    const std::optional<driver::Status> said = rig_->link().status();
+    publish([&](EngineStatus& status) { status.rig = said; });
+    if (!said) return;
+    if (said->state == driver::RigState::Fault) {
+        advance(EngineEvent::FaultSeen, driver::statusName(said->fault));
+        // Refused while its cause lasts, and dark afterwards all the same.
+        if (rig_->link().command(driver::Op::ClearFault)) advance(EngineEvent::FaultCleared);
+    } else {
+        advance(EngineEvent::FaultCleared);
+    }
+}
+
+// ---- jobs ----
+
+/// The first of the plan steps that are the next job's alone, however this one ends.
+Result<std::uint64_t> Engine::reserveSteps() {
+    const std::string key = "plan-step/" + status().serial;
+    const Result<std::string> kept = logbook_.setting(key);
+    if (!kept) return kept.error();
+    const auto first = static_cast<std::uint64_t>(parseInteger(*kept).value_or(1));
+    const auto set = logbook_.set(key, std::to_string(first + kReservedSteps));
+    if (!set) return set.error();
+    return first;
+}
+
+Result<std::string> Engine::runOn(const JobRequest& request, Monitor& monitor) {
+    Result<std::uint64_t> step = reserveSteps();
+    if (!step) return step.error();
+    const EngineStatus now = status();
+    const JobBench bench{.rig = *rig_,
+                         .port = port_,
+                         .store = store_,
+                         .profile = profile_,
+                         .computer = world_.clock,
+                         .nextPlanStep = *step,
+                         .session = now.session ? now.session->name : "",
+                         .utcNow = world_.utcNow,
+                         .monitor = monitor};
+    Result<std::string> outcome = runJob(bench, request);
+    const auto returned = logbook_.set("plan-step/" + now.serial, std::to_string(*step));
+    if (!returned) log::warning(returned.error().message);
+    return outcome;
+}
+
+/// How it ended, and whether the rig is still there.
+void Engine::settle(JobRecord& job, const Result<std::string>& outcome, const Monitor& monitor) {
+    job.endedUtc = world_.utcNow();
+    if (outcome) {
+        job.state = JobState::Done;
+        job.result = *outcome;
+        return;
+    }
+    job.error = outcome.error();
+    job.state = monitor.verdict();
+    if (const auto there = rig_->status(); !there) {
+        job.state = JobState::Interrupted;
+        lost(outcome.error());
+    } else if (const auto dark = rig_->darken(); !dark) {
+        log::warning(dark.error().message);
+    }
+}
+
+void Engine::runPending(const std::stop_token& stop) {
+    if (!pending_) return;
+    Pending job = std::move(*pending_);
+    pending_.reset();
+    const std::string what =
+        job.record.kind + (job.record.name.empty() ? "" : " " + job.record.name);
+    log::info("job " + std::to_string(job.record.id) + ": " + what);
+    advance(EngineEvent::JobBegun);
+    Monitor monitor(*this, stop, what);
+    const Result<std::string> outcome = runOn(job.request, monitor);
+    settle(job.record, outcome, monitor);
+    if (job.record.error) log::warning(job.record.error->message);
+    if (Result<void> kept = logbook_.endJob(job.record); !kept) log::error(kept.error().message);
+    publishCalibrations();
+    {
+        const std::scoped_lock lock(mutex_);
+        busy_ = false;
+        running_.reset();
+        status_.job.reset();
+    }
+    advance(EngineEvent::JobEnded);
+    tellJob(job.record);
+}
+
+void Engine::run(const std::stop_token& stop) {
+    const std::stop_callback wake(stop, [this] { asked_.notify_all(); });
+    while (!stop.stop_requested()) {
+        world_.alive();
+        tend();
+        serveNext();
+        runPending(stop);
+    }
+    refuseAll();
+    disconnect();
+    events_.close();
+}
+
+// ---- life ----
+
+Engine::Engine(Store store,
+               Logbook logbook,
+               StoreLock lock,
+               RigPort& port,
+               RigProfile profile,
+               EngineWorld world,
+               std::uint64_t newestEvent)
+    : store_(std::move(store)),
+      logbook_(std::move(logbook)),
+      lock_(std::move(lock)),
+      port_(port),
+      profile_(std::move(profile)),
+      world_(std::move(world)),
+      events_(newestEvent) {
+    status_.portKind = port.kind();
+}
+
+Engine::~Engine() { refuseAll(); }
+
+Result<std::unique_ptr<Engine>> Engine::open(const std::filesystem::path& root,
+                                             RigPort& port,
+                                             RigProfile profile,
+                                             EngineWorld world) {
+    Result<Store> store = Store::open(root);
+    if (!store) return store.error();
+    Result<StoreLock> lock = StoreLock::take(store->root());
+    if (!lock) return lock.error();
+    Result<Logbook> logbook = Logbook::open(store->root());
+    if (!logbook) return logbook.error();
+    const auto interrupted = logbook->interruptJobs(world.utcNow());
+    if (!interrupted) return interrupted.error();
+    const auto newest = logbook->newestEvent();
+    if (!newest) return newest.error();
+    const auto session = logbook->currentSession();
+    if (!session) return session.error();
+    std::unique_ptr<Engine> engine(new Engine(std::move(*store),
+                                              std::move(*logbook),
+                                              std::move(*lock),
+                                              port,
+                                              std::move(profile),
+                                              std::move(world),
+                                              *newest));
+    engine->status_.session = *session;
+    for (const JobRecord& job : *interrupted) engine->tellJob(job);
+    return engine;
+}
+
+}  // namespace gonio::daemon

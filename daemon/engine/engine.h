@@ -1,0 +1,161 @@
+#pragma once
+// The daemon without its door: one thread owns the rig and writes the store, any other asks. The
+// owner looks for the rig, claims it, feeds its heartbeat, and runs one job at a time. When it
+// ends, the job at hand is ended at its next step and the LEDs are dark.
+
+#include <condition_variable>
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <future>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "daemon/engine/engine_state.h"
+#include "daemon/engine/event_log.h"
+#include "daemon/engine/job.h"
+#include "daemon/engine/rig_port.h"
+#include "daemon/engine/sim_port.h"
+#include "daemon/logbook.h"
+#include "daemon/store_lock.h"
+
+namespace gonio::daemon {
+
+/// The job that runs.
+struct JobStatus {
+    JobRecord record;
+    int step = 0, steps = 0;
+    std::string what;    ///< the newest step
+    std::string prompt;  ///< what a person has to do before it goes on; empty: nothing
+    Seconds elapsed{0};
+    std::optional<Seconds> left{};  ///< by the steps that are done
+};
+
+struct CalibrationDate {
+    std::string kind;
+    std::string dateUtc;
+};
+
+/// What is so at this moment.
+struct EngineStatus {
+    EngineState state = EngineState::Offline;
+    std::string portKind;
+    std::string serial;    ///< empty: no rig has been seen yet
+    std::string obstacle;  ///< why there is no rig
+    std::string placed;    ///< empty: only a person knows
+    std::optional<driver::Status> rig{};
+    std::optional<JobStatus> job{};
+    std::optional<SessionRecord> session{};
+    std::vector<CalibrationDate> calibrations;  ///< newest of each kind, of this rig
+};
+
+/// What the engine must not take from the computer by itself.
+struct EngineWorld {
+    const Clock& clock;
+    std::function<std::string()> utcNow;
+    std::function<std::uint64_t()> randomId;  ///< of a claim
+    std::function<void()> alive;              ///< called at least each second by a sound owner
+};
+
+class Engine {
+public:
+    /// Takes the store's lock: Busy when another daemon has it. What was running when the last one
+    /// ended is Interrupted from now on. The port is borrowed.
+    [[nodiscard]] static Result<std::unique_ptr<Engine>> open(const std::filesystem::path& store,
+                                                              RigPort& port,
+                                                              RigProfile profile,
+                                                              EngineWorld world);
+    ~Engine();
+
+    /// The owner's life: until `stop`. Ends with the LEDs dark and the rig given back.
+    void run(const std::stop_token& stop);
+
+    // From any thread. Busy while a job runs, or when the engine has ended.
+    [[nodiscard]] EngineStatus status() const;
+    [[nodiscard]] const std::filesystem::path& storeRoot() const { return store_.root(); }
+    [[nodiscard]] const RigProfile& profile() const { return profile_; }
+    [[nodiscard]] EventLog& events() { return events_; }
+    [[nodiscard]] Result<std::vector<RigListing>> rigs() { return port_.list(); }
+    /// Begins it: once this has returned the job is in the logbook. NoRig when there is none.
+    Result<JobRecord> submit(const JobRequest& request);
+    /// Ends the running job at its next step; a Usage error when it is not the running one.
+    Result<void> cancel(std::int64_t job);
+    /// What the job asked for is done.
+    Result<void> proceed(std::int64_t job);
+    Result<SessionRecord> openSession(const SessionRecord& session);
+    Result<SessionRecord> closeSession();
+    /// Usage error with a real rig.
+    Result<void> place(const PlaceRequest& request);
+
+private:
+    class Monitor;
+    struct Pending {
+        JobRequest request;
+        JobRecord record;
+    };
+    enum class Wish {
+        None,
+        Proceed,
+        Cancel
+    };
+
+    Engine(Store store,
+           Logbook logbook,
+           StoreLock lock,
+           RigPort& port,
+           RigProfile profile,
+           EngineWorld world,
+           std::uint64_t newestEvent);
+
+    template <class T>
+    Result<T> ask(std::function<Result<T>()> work);
+    void serveNext();
+    void refuseAll();
+    Result<JobRecord> begin(const JobRequest& request);
+
+    void connect();
+    Result<void> claim();
+    void tend();
+    void lost(const Error& why);
+    void disconnect();
+    void runPending(const std::stop_token& stop);
+    [[nodiscard]] Result<std::string> runOn(const JobRequest& request, Monitor& monitor);
+    void settle(JobRecord& job, const Result<std::string>& outcome, const Monitor& monitor);
+    [[nodiscard]] Result<std::uint64_t> reserveSteps();
+
+    void advance(EngineEvent event, const std::string& detail = {});
+    void tell(const std::string& type, const std::string& json, bool kept);
+    void tellJob(const JobRecord& job);
+    template <class Change>
+    void publish(Change change);
+    void publishCalibrations();
+
+    Store store_;
+    Logbook logbook_;
+    StoreLock lock_;
+    RigPort& port_;
+    RigProfile profile_;
+    EngineWorld world_;
+    EventLog events_;
+
+    // The owner's alone.
+    std::optional<driver::Rig> rig_;
+    std::optional<Pending> pending_;
+    Nanoseconds nextTry_{0};
+    std::string lastObstacle_;
+
+    mutable std::mutex mutex_;  ///< of what is below
+    std::condition_variable asked_;
+    std::deque<std::function<void(bool served)>> mailbox_;
+    EngineStatus status_;
+    bool busy_ = false;
+    bool ended_ = false;
+    std::optional<std::int64_t> running_;
+    Wish wish_ = Wish::None;
+};
+
+}  // namespace gonio::daemon

@@ -1,0 +1,39 @@
+#include "daemon/engine/job.h"
+
+#include <array>
+#include <cmath>
+
+namespace gonio::daemon {
+namespace {
+
+constexpr std::array<std::string_view, 5> kKinds{
+    "calibrate-mirror", "calibrate-black", "calibrate-white", "verify-white", "measure"};
+constexpr std::size_t kLongestNotes = 4096;
+
+}  // namespace
+
+std::string_view name(JobKind kind) { return kKinds[static_cast<std::size_t>(kind)]; }
+
+Result<JobKind> parseJobKind(std::string_view text) {
+    std::string list;
+    for (std::size_t i = 0; i < kKinds.size(); ++i) {
+        if (kKinds[i] == text) return static_cast<JobKind>(i);
+        list += (i == 0 ? "" : ", ") + std::string(kKinds[i]);
+    }
+    return Error{ErrorKind::Usage, "job '" + std::string(text) + "': wanted one of " + list};
+}
+
+Result<void> check(const JobRequest& request) {
+    if (request.kind == JobKind::Measure) {
+        if (Result<void> good = checkSampleName(request.name); !good) return good;
+    }
+    if (request.notes.size() > kLongestNotes) {
+        return Error{ErrorKind::Usage, "notes: more than 4096 bytes"};
+    }
+    if (request.kind == JobKind::VerifyWhite && !(request.limit > 0 && request.limit <= 1)) {
+        return Error{ErrorKind::Usage, "limit: wanted above 0 and at most 1 (100 %)"};
+    }
+    return {};
+}
+
+}  // namespace gonio::daemon

@@ -1,0 +1,68 @@
+#pragma once
+// What a rig can be asked to do: the references, the check of the white one, a sample's BRDF. A job
+// is checked before it starts, says its steps, can be ended at each of them, and leaves a document.
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "daemon/engine/rig_port.h"
+#include "daemon/profile.h"
+#include "daemon/store.h"
+#include "driver/rig.h"
+#include "proc/core/effort.h"
+#include "proc/core/stopwatch.h"
+
+namespace gonio::daemon {
+
+enum class JobKind {
+    CalibrateMirror,
+    CalibrateBlack,
+    CalibrateWhite,
+    VerifyWhite,
+    Measure
+};
+[[nodiscard]] std::string_view name(JobKind kind);
+/// "calibrate-mirror", ..., "measure"; anything else is a Usage error that lists them.
+[[nodiscard]] Result<JobKind> parseJobKind(std::string_view text);
+
+struct JobRequest {
+    JobKind kind = JobKind::Measure;
+    std::string name;  ///< of the sample; empty for the others
+    Effort effort = Effort::Standard;
+    std::string notes;    ///< the operator's, kept with the sample
+    double limit = 0.01;  ///< verify-white: the largest relative change that passes
+};
+/// Usage error for what no rig can do.
+[[nodiscard]] Result<void> check(const JobRequest& request);
+
+/// Who follows a job.
+class JobMonitor {
+public:
+    virtual ~JobMonitor() = default;
+    virtual void begin(int steps) = 0;
+    /// One step is done. An error that it returns ends the job.
+    virtual Result<void> step(const std::string& what) = 0;
+    /// A person has to do something; returns once it is done. An error ends the job.
+    virtual Result<void> ask(const std::string& what) = 0;
+    /// All frames are there; what is left is computing.
+    virtual void captured() = 0;
+};
+
+/// What a job works with; all borrowed.
+struct JobBench {
+    driver::Rig& rig;
+    RigPort& port;
+    Store& store;
+    const RigProfile& profile;
+    const Clock& computer;
+    std::uint64_t& nextPlanStep;
+    std::string session;  ///< name; empty: none is open
+    std::function<std::string()> utcNow;
+    JobMonitor& monitor;
+};
+
+/// The document that came of it: JSON, schema gonio/calibrate-mirror/1, ..., gonio/measure/1.
+[[nodiscard]] Result<std::string> runJob(const JobBench& bench, const JobRequest& request);
+
+}  // namespace gonio::daemon

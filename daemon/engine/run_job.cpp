@@ -1,0 +1,330 @@
+// The jobs themselves: capture, calibrate, keep, describe.
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "daemon/alongside.h"
+#include "daemon/engine/job.h"
+#include "daemon/measurement.h"
+#include "proc/core/log.h"
+#include "proc/core/median.h"
+#include "proc/core/number_text.h"
+#include "proc/formats/gonio_exr.h"
+
+namespace gonio::daemon {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kDarkFrames = 4;
+// White multiplies into every later sample, so it is averaged longest: 16 frames at least. Its 320
+// us leave a tile just unsaturated; 1.28 ms add light where the view is dim.
+constexpr BracketPlan kWhiteBracket{.frames = 8, .dim = false, .longest = 3, .first = 2};
+constexpr BracketPlan kBlackBracket{.frames = 8, .dim = false, .longest = -1, .first = 5};
+// A check of the white asks for a mean over all cells: one frame is plenty.
+constexpr BracketPlan kVerifyBracket{.frames = 1, .dim = false, .longest = 2, .first = 2};
+
+std::string dump(const Json& json) {
+    return json.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+/// One run of one job, and how long it took.
+class JobRun {
+public:
+    JobRun(const JobBench& bench, const JobRequest& request)
+        : bench_(bench),
+          request_(request),
+          serial_(bench.rig.identify().serial),
+          onRig_(bench.rig.link().clock()) {}
+
+    Result<Json> calibrateMirror();
+    Result<Json> calibrateTile(bool white);
+    Result<Json> verifyWhite();
+    Result<Json> measure();
+
+private:
+    [[nodiscard]] Bench measuring() const {
+        return {.rig = bench_.rig,
+                .profile = bench_.profile,
+                .nextPlanStep = bench_.nextPlanStep,
+                .clock = bench_.computer,
+                .step = [this](const std::string& what) { return bench_.monitor.step(what); }};
+    }
+    [[nodiscard]] std::size_t leds() const { return bench_.rig.identify().ledAngles.size(); }
+    [[nodiscard]] proc::SampleInfo info(const std::string& name) const;
+    /// Takes all states of what lies under the rig, which is dark afterwards.
+    Result<Captured> capture(const BracketPlan& plan, int darkFrames);
+    [[nodiscard]] Result<void> expectPlaced(const std::string& reference) const;
+    Result<void> placeMirror(const proc::Wedge& wedge);
+    [[nodiscard]] Result<ReferenceRecord> reference(const std::string& kind) const;
+    void finish(proc::SampleInfo& info, const Captured& captured) const;
+    Result<SampleRecord> keep(const proc::SampleSet& set, std::vector<proc::RawState> states);
+
+    const JobBench& bench_;
+    const JobRequest& request_;
+    std::string serial_;
+    Stopwatch onRig_;
+};
+
+/// What every file of this job says of its origin.
+proc::SampleInfo JobRun::info(const std::string& name) const {
+    proc::SampleInfo info;
+    info.name = name;
+    info.rigSerial = serial_;
+    info.profileHash = bench_.profile.hash;
+    info.session = bench_.session;
+    info.dateUtc = bench_.utcNow();
+    info.softwareVersion = "gonio " GONIO_VERSION;
+    info.operatorNotes = request_.notes;
+    bench_.port.describe(info);
+    return info;
+}
+
+Result<std::string> rawBytes(const proc::SampleInfo& info, std::vector<proc::RawState> states) {
+    return proc::encodeGraw({.info = {{"name", info.name},
+                                      {"rig_serial", info.rigSerial},
+                                      {"profile_hash", info.profileHash},
+                                      {"date", info.dateUtc},
+                                      {"software", info.softwareVersion}},
+                             .states = std::move(states)});
+}
+
+void JobRun::finish(proc::SampleInfo& info, const Captured& captured) const {
+    info.rigSeconds = onRig_.elapsed().count();
+    info.computeSeconds = captured.compute.count();
+    info.extra["chi_square_per_freedom"] = shortest(captured.chiSquarePerFreedom);
+}
+
+Result<Captured> JobRun::capture(const BracketPlan& plan, int darkFrames) {
+    const Result<LensRecord> lens = loadLens(bench_.store, serial_);
+    if (!lens) return lens.error();
+    const Bench bench = measuring();
+    bench_.monitor.begin(placementSteps(bench));
+    Result<Captured> captured = measurePlacement(bench, lens->fit.map, plan, darkFrames);
+    if (!captured) return captured;
+    if (Result<void> dark = bench_.rig.darken(); !dark) return dark.error();
+    bench_.monitor.captured();
+    return captured;
+}
+
+Result<void> JobRun::expectPlaced(const std::string& reference) const {
+    const std::string placed = bench_.port.placed();
+    if (placed.empty() || placed == reference) return {};
+    return Error{ErrorKind::Quality,
+                 "under the rig lies '" + placed + "'; place the " + reference +
+                     " first: gonio sim place " + reference};
+}
+
+Result<void> JobRun::placeMirror(const proc::Wedge& wedge) {
+    const Result<bool> placed = bench_.port.placeMirror(wedge);
+    if (!placed) return placed.error();
+    if (*placed) return {};
+    return bench_.monitor.ask("put the mirror on the wedge of " + fixed(wedge.aboutX.degrees(), 0) +
+                              " degrees about x and " + fixed(wedge.aboutY.degrees(), 0) +
+                              " degrees about y");
+}
+
+/// A reference is of this rig's LEDs, or its cells would be taken for others'.
+Result<ReferenceRecord> JobRun::reference(const std::string& kind) const {
+    Result<ReferenceRecord> found = loadReference(bench_.store, serial_, kind);
+    if (!found || found->signals.size() == leds()) return found;
+    return Error{ErrorKind::Quality,
+                 "the " + kind + " reference of " + serial_ + " has " +
+                     std::to_string(found->signals.size()) + " LEDs, the rig " +
+                     std::to_string(leds()) + "; run: gonio calibrate " + kind};
+}
+
+Result<Json> JobRun::calibrateMirror() {
+    if (Result<void> placed = expectPlaced("mirror"); !placed) return placed.error();
+    const Bench bench = measuring();
+    bench_.monitor.begin(mirrorSteps(bench));
+    Result<LensRecord> lens =
+        measureLens(bench, [this](const proc::Wedge& wedge) { return placeMirror(wedge); });
+    if (!lens) return lens.error();
+    if (Result<void> dark = bench_.rig.darken(); !dark) return dark.error();
+    bench_.monitor.captured();
+    lens->dateUtc = bench_.utcNow();
+    const auto kept = bench_.store.addCalibration(
+        {.rig = serial_, .kind = "mirror", .dateUtc = lens->dateUtc}, {.file = encodeLens(*lens)});
+    if (!kept) return kept.error();
+    return Json{{"schema", "gonio/calibrate-mirror/1"},
+                {"rig", serial_},
+                {"spots", lens->spots},
+                {"rms_px", lens->fit.rmsPixels},
+                {"worst_px", lens->fit.worstPixels},
+                {"rig_seconds", onRig_.elapsed().count()},
+                {"file", kept->file.string()}};
+}
+
+Result<Json> JobRun::calibrateTile(bool white) {
+    const std::string kind = white ? "white" : "black";
+    if (Result<void> placed = expectPlaced(kind); !placed) return placed.error();
+    Result<Captured> captured = capture(white ? kWhiteBracket : kBlackBracket, 2 * kDarkFrames);
+    if (!captured) return captured.error();
+    if (white) {
+        const Result<ReferenceRecord> black = reference("black");
+        if (!black) return black.error();
+        if (Result<void> bright = checkWhite(captured->signals, black->signals); !bright) {
+            return bright.error();
+        }
+    }
+    proc::SampleInfo about = info(kind);
+    about.truthSpec.clear();
+    finish(about, *captured);
+    const std::size_t states = captured->raw.states.size();
+    const auto kept = alongside(bench_.rig, [&]() -> Result<CalibrationRecord> {
+        const Result<std::string> raw = rawBytes(about, std::move(captured->raw.states));
+        if (!raw) return raw.error();
+        const Result<std::string> bytes =
+            encodeReference({about, captured->signals}, bench_.rig.identify().ledAngles);
+        if (!bytes) return bytes.error();
+        return bench_.store.addCalibration({.rig = serial_, .kind = kind, .dateUtc = about.dateUtc},
+                                           {.file = *bytes, .raw = *raw});
+    });
+    if (!kept) return kept.error();
+    return Json{{"schema", "gonio/calibrate-" + kind + "/1"},
+                {"rig", serial_},
+                {"states", states},
+                {"chi_square_per_freedom", captured->chiSquarePerFreedom},
+                {"rig_seconds", about.rigSeconds},
+                {"compute_seconds", about.computeSeconds},
+                {"file", kept->file.string()}};
+}
+
+/// Median over the cells of how bright it is now over how bright it was.
+double medianRatio(const proc::CellSignal& now, const proc::CellSignal& then) {
+    std::vector<double> ratios;
+    for (std::size_t cell = 0; cell < now.size(); ++cell) {
+        if (now.present(cell) && then.present(cell) && then.signal[cell] > 0) {
+            ratios.push_back(now.signal[cell] / then.signal[cell]);
+        }
+    }
+    return ratios.empty() ? std::nan("") : median(std::move(ratios));
+}
+
+Result<Json> JobRun::verifyWhite() {
+    if (Result<void> placed = expectPlaced("white"); !placed) return placed.error();
+    const Result<ReferenceRecord> white = reference("white");
+    if (!white) return white.error();
+    const Result<Captured> captured = capture(kVerifyBracket, kDarkFrames);
+    if (!captured) return captured.error();
+    Json states = Json::array();
+    double worst = 0;
+    std::string worstState;
+    for (std::size_t led = 0; led < leds(); ++led) {
+        for (Band band : kBands) {
+            const double ratio =
+                medianRatio(captured->signals[led][index(band)], white->signals[led][index(band)]);
+            states.push_back({{"led", led}, {"band", std::string(letter(band))}, {"ratio", ratio}});
+            if (std::abs(ratio - 1) <= worst) continue;  // also takes a NaN for the worst
+            worst = std::isnan(ratio) ? 1 : std::abs(ratio - 1);
+            worstState = "LED " + std::to_string(led) + " " + std::string(letter(band));
+        }
+    }
+    if (worst > request_.limit) {
+        return Error{ErrorKind::Quality,
+                     worstState + ": white has changed by " + fixed(100 * worst, 2) +
+                         " % since it was calibrated, at most " + fixed(100 * request_.limit, 2) +
+                         " % was allowed; clean it, wait for the rig to warm up, or run: gonio "
+                         "calibrate white"};
+    }
+    return Json{{"schema", "gonio/verify-white/1"},
+                {"rig", serial_},
+                {"calibrated", white->info.dateUtc},
+                {"worst_change", worst},
+                {"limit", request_.limit},
+                {"states", states},
+                {"rig_seconds", onRig_.elapsed().count()}};
+}
+
+int measuredCells(const proc::SampleSet& set) {
+    int cells = 0;
+    for (const proc::LedTable& led : set.leds) {
+        for (const proc::CellSamples& band : led.bands) {
+            for (std::size_t cell = 0; cell < band.size(); ++cell)
+                cells += band.present(cell) ? 1 : 0;
+        }
+    }
+    return cells;
+}
+
+Result<SampleRecord> JobRun::keep(const proc::SampleSet& set, std::vector<proc::RawState> states) {
+    const Result<std::string> raw = rawBytes(set.info, std::move(states));
+    if (!raw) return raw.error();
+    const Result<std::string> bytes = proc::encodeGonio(set);
+    if (!bytes) return bytes.error();
+    auto kept = bench_.store.addSample({.name = request_.name,
+                                        .rig = serial_,
+                                        .dateUtc = set.info.dateUtc,
+                                        .session = bench_.session},
+                                       {.file = *bytes, .raw = *raw});
+    if (!kept) return kept.error();
+    if (!kept->movedTo.empty()) {
+        log::warning("sample '" + request_.name + "' was there; it is kept as '" + kept->movedTo +
+                     "'");
+    }
+    return std::move(kept->sample);
+}
+
+Result<Json> JobRun::measure() {
+    const Result<LensRecord> lens = loadLens(bench_.store, serial_);
+    if (!lens) return lens.error();
+    const Result<ReferenceRecord> black = reference("black");
+    if (!black) return black.error();
+    const Result<ReferenceRecord> white = reference("white");
+    if (!white) return white.error();
+    const Result<References> certified = loadReferences(bench_.profile);
+    if (!certified) return certified.error();
+    Result<Captured> captured = capture(sampleBracket(request_.effort), kDarkFrames);
+    if (!captured) return captured.error();
+
+    proc::SampleInfo about = info(request_.name);
+    about.effort = gonio::name(request_.effort);
+    about.referenceCertificate = certified->white->certificate().citation;
+    about.calibrationId = serial_ + "/" + white->info.dateUtc;
+    finish(about, *captured);
+    proc::SampleSet set;
+    const auto kept = alongside(bench_.rig, [&] {
+        const Stopwatch calibrating(bench_.computer);
+        set = calibrateSample(captured->signals,
+                              bench_.rig.identify().ledAngles,
+                              {*lens, *white, *black, *certified},
+                              std::move(about));
+        set.info.computeSeconds += calibrating.elapsed().count();
+        return keep(set, std::move(captured->raw.states));
+    });
+    if (!kept) return kept.error();
+    return Json{{"schema", "gonio/measure/1"},
+                {"name", request_.name},
+                {"file", kept->file.string()},
+                {"raw", kept->raw.string()},
+                {"effort", set.info.effort},
+                {"measured_cells", measuredCells(set)},
+                {"median_relative_uncertainty", set.info.achievedUncertainty.value_or(0)},
+                {"chi_square_per_freedom", captured->chiSquarePerFreedom},
+                {"rig_seconds", set.info.rigSeconds},
+                {"compute_seconds", set.info.computeSeconds}};
+}
+
+Result<Json> run(JobRun& job, JobKind kind) {
+    switch (kind) {
+        case JobKind::CalibrateMirror: return job.calibrateMirror();
+        case JobKind::CalibrateBlack: return job.calibrateTile(false);
+        case JobKind::CalibrateWhite: return job.calibrateTile(true);
+        case JobKind::VerifyWhite: return job.verifyWhite();
+        case JobKind::Measure: return job.measure();
+    }
+    return Error{ErrorKind::Internal, "no such job"};
+}
+
+}  // namespace
+
+Result<std::string> runJob(const JobBench& bench, const JobRequest& request) {
+    JobRun job(bench, request);
+    const Result<Json> document = run(job, request.kind);
+    if (!document) return document.error();
+    return dump(*document);
+}
+
+}  // namespace gonio::daemon

@@ -1,0 +1,121 @@
+#include "daemon/engine/sim_port.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "proc/core/number_text.h"
+
+namespace gonio::daemon {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kSteepestDegrees = 30;
+constexpr std::size_t kLongestSerial = 32;
+
+Error refused(const std::string& what) { return {ErrorKind::Usage, "sim place: " + what}; }
+
+bool isReference(const std::string& what) {
+    return what == "nothing" || what == "mirror" || what == "white" || what == "black";
+}
+
+/// What will name the same thing after the store has changed.
+Result<std::string> lastingName(const std::string& what, Store& store) {
+    constexpr std::string_view kSample = "sample:";
+    if (!what.starts_with(kSample)) return what;
+    const auto record = store.sample(what.substr(kSample.size()));
+    if (!record) return record.error();
+    return fs::absolute(record->file).string();
+}
+
+}  // namespace
+
+Result<void> check(const PlaceRequest& request) {
+    for (const double tilt : {request.tiltXDegrees, request.tiltYDegrees}) {
+        if (!(std::abs(tilt) <= kSteepestDegrees)) {
+            return refused("a tilt of " + shortest(tilt) + ", wanted -30 to 30 degrees");
+        }
+        if (tilt != 0 && request.what != "mirror") return refused("only the mirror can be tilted");
+    }
+    const bool named = isReference(request.what) || request.what.starts_with("model:") ||
+                       request.what.starts_with("sample:") || fs::path(request.what).is_absolute();
+    if (!named) {
+        return refused("'" + request.what +
+                       "': wanted black, white, mirror, nothing, model:SPEC, sample:NAME or an "
+                       "absolute path");
+    }
+    if (!request.serial) return {};
+    const std::string& serial = *request.serial;
+    const bool printable =
+        std::all_of(serial.begin(), serial.end(), [](char c) { return c > ' ' && c <= '~'; });
+    if (printable && !serial.empty() && serial.size() <= kLongestSerial) return {};
+    return refused("a serial is 1 to 32 printable characters");
+}
+
+Result<std::unique_ptr<SimPort>> SimPort::open(const fs::path& root) {
+    Result<Store> store = Store::open(root);
+    if (!store) return store.error();
+    Result<SimState> state = readSimState(*store);
+    if (!state) return state.error();
+    return std::unique_ptr<SimPort>(new SimPort(std::move(*store), std::move(*state)));
+}
+
+Result<std::vector<RigListing>> SimPort::list() {
+    const std::scoped_lock lock(mutex_);
+    return std::vector<RigListing>{{.kind = "sim",
+                                    .serial = state_.serial,
+                                    .place = {},
+                                    .protocol = "GRP/1.0",
+                                    .obstacle = {}}};
+}
+
+Result<driver::Transport*> SimPort::open() {
+    auto door = openSim(state_, store_);
+    if (!door) return door.error();
+    door_ = std::move(*door);
+    return door_.get();
+}
+
+Result<bool> SimPort::placeMirror(const proc::Wedge& wedge) {
+    if (door_ == nullptr) return Error{ErrorKind::NoRig, "the simulated rig is not open"};
+    door_->device().place(
+        {.role = sim::Role::Mirror, .surface = nullptr, .wedge = {wedge.aboutX, wedge.aboutY}});
+    return true;
+}
+
+void SimPort::describe(proc::SampleInfo& info) const {
+    info.truthSpec = state_.placed;
+    info.extra["seed"] = std::to_string(state_.seed);
+    info.extra["rig"] = "simulated, systematic errors of the references: " + state_.systematic;
+}
+
+void SimPort::adopt(SimState state) {
+    const std::scoped_lock lock(mutex_);
+    state_ = std::move(state);
+}
+
+Result<bool> SimPort::place(const PlaceRequest& request) {
+    if (Result<void> good = check(request); !good) return good.error();
+    SimState next = state_;
+    if (request.seed) next.seed = *request.seed;
+    if (request.serial) next.serial = *request.serial;
+    if (request.systematic) next.systematic = *request.systematic;
+    Result<std::string> placed = lastingName(request.what, store_);
+    if (!placed) return placed.error();
+    next.placed = std::move(*placed);
+    next.wedge = {.aboutX = Radians::fromDegrees(request.tiltXDegrees),
+                  .aboutY = Radians::fromDegrees(request.tiltYDegrees)};
+    const bool another = next.seed != state_.seed || next.serial != state_.serial ||
+                         next.systematic != state_.systematic;
+    if (another) {  // opening it now tells at once what is wrong with it
+        if (const auto door = openSim(next, store_); !door) return door.error();
+    }
+    Result<sim::Placement> placement = makePlacement(next, store_);
+    if (!placement) return placement.error();
+    if (Result<void> kept = writeSimState(store_, next); !kept) return kept.error();
+    adopt(std::move(next));
+    if (door_ != nullptr && !another) door_->device().place(std::move(*placement));
+    return another;
+}
+
+}  // namespace gonio::daemon

@@ -1,0 +1,55 @@
+#pragma once
+// The simulated rig, in this process and in virtual time, and its own door: what lies under it. The
+// rig is kept in the store's sim.json over restarts.
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "daemon/engine/rig_port.h"
+#include "daemon/sim_bench.h"
+
+namespace gonio::daemon {
+
+/// Empty members are kept as they are.
+struct PlaceRequest {
+    std::string what;  ///< black, white, mirror, nothing, an absolute path, model: or sample:
+    double tiltXDegrees = 0;  ///< turns the surface about x
+    double tiltYDegrees = 0;
+    std::optional<std::uint64_t> seed{};
+    std::optional<std::string> serial{};
+    std::optional<std::string> systematic{};  ///< none, random, or stratum:K
+};
+
+/// Usage error for what can never be placed.
+[[nodiscard]] Result<void> check(const PlaceRequest& request);
+
+class SimPort : public RigPort {
+public:
+    [[nodiscard]] static Result<std::unique_ptr<SimPort>> open(const std::filesystem::path& store);
+
+    [[nodiscard]] std::string_view kind() const override { return "sim"; }
+    [[nodiscard]] Result<std::vector<RigListing>> list() override;
+    [[nodiscard]] Result<driver::Transport*> open() override;
+    void close() override { door_.reset(); }
+    [[nodiscard]] std::string placed() const override { return state_.placed; }
+    Result<bool> placeMirror(const proc::Wedge& wedge) override;
+    void describe(proc::SampleInfo& info) const override;
+    [[nodiscard]] SimPort* simulated() override { return this; }
+
+    /// True: it is another rig from now on, and has to be opened anew. Whatever is wrong with what
+    /// is to be placed is said at once, and the rig stays as it was.
+    Result<bool> place(const PlaceRequest& request);
+
+private:
+    SimPort(Store store, SimState state) : store_(std::move(store)), state_(std::move(state)) {}
+    void adopt(SimState state);
+
+    Store store_;
+    SimState state_;
+    std::mutex mutex_;  ///< of the serial number, which list() reads
+    std::unique_ptr<sim::InProcessDoor> door_;
+};
+
+}  // namespace gonio::daemon
