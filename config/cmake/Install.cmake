@@ -43,4 +43,13 @@ if(TARGET gonio)
     install(TARGETS gonio goniod COMPONENT program)
     install(DIRECTORY config/rigs config/references config/demo COMPONENT program
         DESTINATION ${CMAKE_INSTALL_DATADIR}/gonio OPTIONAL)
+    # For a real rig: who may open it, the daemon as a service, what it is told. Paths in the unit are
+    # those of CMAKE_INSTALL_PREFIX at configure time.
+    configure_file(config/linux/goniod.service.in goniod.service @ONLY)
+    install(FILES ${CMAKE_BINARY_DIR}/goniod.service COMPONENT program
+        DESTINATION lib/systemd/system)
+    install(FILES config/linux/70-gonio.rules COMPONENT program DESTINATION lib/udev/rules.d)
+    install(FILES config/goniod.toml COMPONENT program
+        DESTINATION ${CMAKE_INSTALL_SYSCONFDIR}/gonio)
+    install(FILES docs/install.md COMPONENT program DESTINATION ${CMAKE_INSTALL_DOCDIR})
 endif()

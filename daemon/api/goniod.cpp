@@ -66,6 +66,8 @@ Result<void> serve(const DaemonOptions& options) {
     const auto store = options.store.empty() ? defaultStore() : options.store;
     const auto socket = socketPath(options.socket, store);
     if (Result<void> good = checkSocketPath(socket); !good) return good;
+    const Result<SocketAccess> access = parseSocketMode(options.socketMode);
+    if (!access) return access.error();
     Result<RigProfile> profile =
         readProfile(options.profile.empty() ? defaultProfile() : options.profile);
     if (!profile) return profile.error();
@@ -80,7 +82,7 @@ Result<void> serve(const DaemonOptions& options) {
                           sd_notify(0, "WATCHDOG=1");
                       }});
     if (!engine) return engine.error();
-    auto server = HttpServer::open(socket, **engine);
+    auto server = HttpServer::open(socket, **engine, *access);
     if (!server) return server.error();
     std::jthread owner([&](const std::stop_token& stop) { (*engine)->run(stop); });
     log::info("serving at " + socket.string());
@@ -105,6 +107,7 @@ struct Arguments {
         app.add_option("--rig", options.rig, "sim, usb or usb:SERIAL");
         app.add_option("--store", options.store, "folder of calibrations and samples");
         app.add_option("--socket", options.socket, "where to serve; goniod.sock in the store");
+        app.add_option("--socket-mode", options.socketMode, "0600, or 0660 for the group too");
         app.add_option("--profile", options.profile, "rig profile (TOML)");
         app.add_option("--config", config, "goniod.toml, for what the options above do not say");
         app.add_flag("-v,--verbose", verbose, "say on stderr what is done");

@@ -7,7 +7,6 @@
 #include <atomic>
 #include <thread>
 
-#include "daemon/api/socket_path.h"
 #include "proc/core/log.h"
 #include "proc/core/number_text.h"
 
@@ -94,7 +93,7 @@ public:
     Impl(const Impl&) = delete;
     Impl& operator=(const Impl&) = delete;
 
-    Result<void> listen(const std::filesystem::path& socket);
+    Result<void> listen(const std::filesystem::path& socket, SocketAccess access);
 
 private:
     void route();
@@ -159,10 +158,11 @@ void HttpServer::Impl::route() {
     server_.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };  // it deletes it
 }
 
-Result<void> HttpServer::Impl::listen(const std::filesystem::path& socket) {
+Result<void> HttpServer::Impl::listen(const std::filesystem::path& socket, SocketAccess access) {
     route();
     server_.set_address_family(AF_UNIX);
-    const mode_t before = ::umask(0177);  // nobody else may connect, from the first moment on
+    // Nobody else may connect, from the first moment on.
+    const mode_t before = ::umask(access == SocketAccess::User ? 0177 : 0117);
     const bool bound = server_.bind_to_port(socket.string(), kUnusedPort);
     ::umask(before);
     if (!bound) {
@@ -180,11 +180,12 @@ HttpServer::HttpServer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 HttpServer::~HttpServer() = default;
 
 Result<std::unique_ptr<HttpServer>> HttpServer::open(const std::filesystem::path& socket,
-                                                     Engine& engine) {
+                                                     Engine& engine,
+                                                     SocketAccess access) {
     Result<SocketClaim> claim = SocketClaim::take(socket);
     if (!claim) return claim.error();
     auto impl = std::make_unique<Impl>(engine, std::move(*claim));
-    if (Result<void> listening = impl->listen(socket); !listening) return listening.error();
+    if (Result<void> listening = impl->listen(socket, access); !listening) return listening.error();
     return std::unique_ptr<HttpServer>(new HttpServer(std::move(impl)));
 }
 

@@ -10,7 +10,8 @@
 namespace gonio::daemon {
 namespace {
 
-constexpr std::array<std::string_view, 5> kKeys{"schema", "rig", "store", "socket", "profile"};
+constexpr std::array<std::string_view, 6> kKeys{
+    "schema", "rig", "store", "socket", "socket_mode", "profile"};
 constexpr std::string_view kSchema = "gonio/goniod/1";
 
 }  // namespace
@@ -29,7 +30,8 @@ Result<DaemonOptions> readDaemonOptions(const std::filesystem::path& file) {
         if (known && value.is_string()) continue;
         return Error{ErrorKind::File,
                      file.string() + ": key '" + std::string(key.str()) +
-                         (known ? "': wanted a text" : "': wanted rig, store, socket or profile")};
+                         (known ? "': wanted a text"
+                                : "': wanted rig, store, socket, socket_mode or profile")};
     }
     const auto member = [&](std::string_view key) {
         return table[key].value<std::string>().value_or("");
@@ -41,7 +43,8 @@ Result<DaemonOptions> readDaemonOptions(const std::filesystem::path& file) {
     return DaemonOptions{.rig = member("rig"),
                          .store = member("store"),
                          .socket = member("socket"),
-                         .profile = member("profile")};
+                         .profile = member("profile"),
+                         .socketMode = member("socket_mode")};
 }
 
 DaemonOptions overlaid(DaemonOptions first, const DaemonOptions& second) {
@@ -49,6 +52,7 @@ DaemonOptions overlaid(DaemonOptions first, const DaemonOptions& second) {
     if (first.store.empty()) first.store = second.store;
     if (first.socket.empty()) first.socket = second.socket;
     if (first.profile.empty()) first.profile = second.profile;
+    if (first.socketMode.empty()) first.socketMode = second.socketMode;
     return first;
 }
 
@@ -62,6 +66,12 @@ Result<RigChoice> parseRigChoice(const std::string& rig) {
     return Error{ErrorKind::Usage,
                  rig.empty() ? "which rig? Say --rig sim, --rig usb or --rig usb:SERIAL"
                              : "--rig '" + rig + "': wanted sim, usb or usb:SERIAL"};
+}
+
+Result<SocketAccess> parseSocketMode(const std::string& mode) {
+    if (mode.empty() || mode == "0600") return SocketAccess::User;
+    if (mode == "0660") return SocketAccess::Group;
+    return Error{ErrorKind::Usage, "socket_mode '" + mode + "': wanted 0600 or 0660"};
 }
 
 }  // namespace gonio::daemon

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "daemon/api/socket_path.h"
 #include "proc/core/result.h"
 
 namespace gonio::daemon {
@@ -16,9 +17,11 @@ struct DaemonOptions {
     std::filesystem::path store;
     std::filesystem::path socket;
     std::filesystem::path profile;
+    std::string socketMode;  ///< "0600" (default) or "0660"
 };
 
-/// Keys rig, store, socket, profile, all optional. File error that names the file and the key.
+/// Keys rig, store, socket, socket_mode, profile, all optional. File error that names the file and
+/// the key.
 [[nodiscard]] Result<DaemonOptions> readDaemonOptions(const std::filesystem::path& file);
 
 /// Each member of `first`; where that is empty, of `second`.
@@ -30,5 +33,8 @@ struct RigChoice {
     std::optional<std::string> serial{};
 };
 [[nodiscard]] Result<RigChoice> parseRigChoice(const std::string& rig);
+
+/// Who may connect: the daemon's user, or its group too. Usage error for anything else.
+[[nodiscard]] Result<SocketAccess> parseSocketMode(const std::string& mode);
 
 }  // namespace gonio::daemon

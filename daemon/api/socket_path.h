@@ -14,6 +14,12 @@ namespace gonio::daemon {
 /// Usage error for a path that no UNIX socket can have.
 [[nodiscard]] Result<void> checkSocketPath(const std::filesystem::path& socket);
 
+/// Who may connect.
+enum class SocketAccess {
+    User,  ///< 0600
+    Group  ///< 0660
+};
+
 /// The right to serve at a socket: held while this lives, the socket's file removed with it.
 class SocketClaim {
 public:

@@ -75,6 +75,8 @@ struct WatchOptions {
 /// Prints events as they happen, until Ctrl-C.
 Result<void> watch(const CommonOptions& common, const WatchOptions& options);
 
+Result<void> doctor(const CommonOptions& common);
+
 Result<void> info(const CommonOptions& common, const std::string& file);
 
 struct EvalOptions {

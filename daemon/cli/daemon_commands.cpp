@@ -33,22 +33,6 @@ Result<void> shown(const CommonOptions& common, const Result<std::string>& answe
     return {};
 }
 
-void printTable(const std::vector<std::vector<std::string>>& rows) {
-    std::vector<std::size_t> widths;
-    for (const auto& row : rows) {
-        widths.resize(std::max(widths.size(), row.size()));
-        for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
-    }
-    for (const auto& row : rows) {
-        std::string line;
-        for (std::size_t i = 0; i < row.size(); ++i) {
-            line += row[i];
-            if (i + 1 < row.size()) line += std::string(widths[i] - row[i].size() + 2, ' ');
-        }
-        std::cout << line << "\n";
-    }
-}
-
 std::string jobLine(const Json& job) {
     if (!job.is_object()) return "none";
     std::string line = std::to_string(job["id"].get<int>()) + ": " + textOr(job["kind"], "") + " " +

@@ -147,6 +147,9 @@ void Program::addDaemon() {
     });
     command(app, "rigs", "the rigs that the daemon could use", [this] { return rigs(common); });
     command(app, "samples", "the samples of the store", [this] { return samples(common); });
+    command(app, "doctor", "what stands between this computer and a measurement", [this] {
+        return doctor(common);
+    });
     CLI::App* parent =
         command(app, "jobs", "the newest jobs and how they ended", [this] { return jobs(common); });
     command(*parent, "cancel", "end the job that runs", [this] { return cancelJob(common); });

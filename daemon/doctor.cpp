@@ -1,0 +1,191 @@
+#include "daemon/doctor.h"
+
+#include <unistd.h>
+
+#include <array>
+#include <fstream>
+#include <iterator>
+
+#include "proc/core/number_text.h"
+
+namespace gonio::daemon {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kRule = "70-gonio.rules";
+// A rig's stream keeps 2 MiB in flight (PROTOCOL.md 3); other devices share the rest.
+constexpr std::int64_t kLeastUsbMegabytes = 16;
+constexpr std::uintmax_t kLeastFreeBytes = 1ULL << 30;  // some 60 measurements with their raw data
+constexpr double kMebibyte = 1024.0 * 1024.0;
+
+fs::path under(const fs::path& root, const std::string& path) { return root / path.substr(1); }
+
+std::string firstLine(const fs::path& file) {
+    std::ifstream in(file);
+    std::string line;
+    std::getline(in, line);
+    return line;
+}
+
+Finding usb(const Patient& patient) {
+    if (!patient.rigs) {
+        return {"usb",
+                Verdict::Warning,
+                patient.rigs.error().message,
+                "in a container: hand /dev/bus/usb in; the simulated rig works without"};
+    }
+    if (patient.rigs->empty()) {
+        return {"usb", Verdict::Note, "no rig is plugged in", "plug it in, or use --rig sim"};
+    }
+    std::string seen;
+    for (const driver::UsbRig& rig : *patient.rigs) {
+        seen += (seen.empty() ? "" : ", ") + (rig.serial.empty() ? "a rig" : rig.serial) + " at " +
+                rig.place;
+    }
+    return {"usb", Verdict::Good, seen, ""};
+}
+
+Finding permission(const Patient& patient) {
+    if (patient.rigs) {
+        for (const driver::UsbRig& rig : *patient.rigs) {
+            if (!rig.obstacle.empty()) {
+                return {
+                    "permission", Verdict::Bad, rig.obstacle, "see there; then plug it in again"};
+            }
+        }
+    }
+    const bool looked = patient.rigs && !patient.rigs->empty();
+    return {"permission",
+            looked ? Verdict::Good : Verdict::Note,
+            looked ? "every rig may be opened" : "cannot be seen without a rig",
+            ""};
+}
+
+Finding udevRule(const Patient& patient) {
+    constexpr std::array kPlaces{"/etc/udev/rules.d",
+                                 "/usr/local/lib/udev/rules.d",
+                                 "/usr/lib/udev/rules.d",
+                                 "/lib/udev/rules.d"};
+    std::error_code ignored;
+    for (const char* place : kPlaces) {
+        const fs::path rule = under(patient.root, place) / kRule;
+        if (fs::exists(rule, ignored)) return {"udev-rule", Verdict::Good, rule.string(), ""};
+    }
+    if (::geteuid() == 0) return {"udev-rule", Verdict::Note, "missing, root does without", ""};
+    return {"udev-rule",
+            Verdict::Warning,
+            "missing: only root can open a rig",
+            "copy config/linux/70-gonio.rules to /etc/udev/rules.d, run udevadm control --reload, "
+            "plug the rig in again"};
+}
+
+Finding hotplug(const Patient& patient) {
+    std::error_code ignored;
+    if (fs::exists(under(patient.root, "/run/udev/control"), ignored)) {
+        return {"hotplug", Verdict::Good, "udevd runs", ""};
+    }
+    return {"hotplug",
+            Verdict::Note,
+            "no udevd (a container?): a rig is looked for each 500 ms instead",
+            ""};
+}
+
+Finding usbfsMemory(const Patient& patient) {
+    const fs::path file = under(patient.root, "/sys/module/usbcore/parameters/usbfs_memory_mb");
+    const auto megabytes = parseInteger(firstLine(file));
+    if (!megabytes) {
+        return {"usbfs-memory", Verdict::Note, "this kernel has no USB", "use --rig sim"};
+    }
+    const std::string seen = std::to_string(*megabytes) + " MiB for all USB devices";
+    // 0 is no limit.
+    if (*megabytes == 0 || *megabytes >= kLeastUsbMegabytes) {
+        return {"usbfs-memory", Verdict::Good, seen, ""};
+    }
+    return {"usbfs-memory", Verdict::Warning, seen, "as root: echo 64 > " + file.string()};
+}
+
+Finding hidraw(const Patient& patient) {
+    const fs::path folder = under(patient.root, "/sys/class/hidraw");
+    std::error_code failed;
+    std::size_t nodes = 0;
+    for (const auto& entry : fs::directory_iterator(folder, failed)) {
+        (void)entry;
+        ++nodes;
+    }
+    if (failed) {
+        return {"hidraw",
+                Verdict::Warning,
+                "this kernel has no hidraw (CONFIG_HIDRAW)",
+                "a rig's LED controller needs it; the simulated rig works without"};
+    }
+    const bool rig = patient.rigs && !patient.rigs->empty();
+    if (nodes == 0 && rig) {
+        return {"hidraw",
+                Verdict::Bad,
+                "a rig is there, but no hidraw node",
+                "load the module: modprobe usbhid"};
+    }
+    return {"hidraw", Verdict::Good, std::to_string(nodes) + " nodes", ""};
+}
+
+/// The nearest folder above that exists: there the store would be made.
+fs::path existing(fs::path folder) {
+    std::error_code ignored;
+    folder = fs::absolute(folder, ignored);
+    while (!fs::exists(folder, ignored) && folder.has_relative_path())
+        folder = folder.parent_path();
+    return folder;
+}
+
+Finding store(const Patient& patient) {
+    const fs::path folder = existing(patient.store);
+    if (::access(folder.c_str(), W_OK | X_OK) != 0) {
+        return {"store",
+                Verdict::Bad,
+                patient.store.string() + " cannot be written",
+                "choose another with --store DIR, or change its owner"};
+    }
+    std::error_code failed;
+    const fs::space_info space = fs::space(folder, failed);
+    const std::string seen = patient.store.string() + ", " +
+                             fixed(static_cast<double>(space.available) / kMebibyte / 1024, 1) +
+                             " GiB free";
+    if (!failed && space.available < kLeastFreeBytes) {
+        return {"store", Verdict::Warning, seen, "make room: a measurement takes about 16 MiB"};
+    }
+    return {"store", Verdict::Good, seen, ""};
+}
+
+Finding daemonReached(const Patient& patient) {
+    if (patient.daemon) return {"daemon", Verdict::Good, "answers", ""};
+    return {"daemon",
+            Verdict::Warning,
+            patient.daemon.error().message,
+            "start it: goniod --rig usb, or goniod --rig sim"};
+}
+
+}  // namespace
+
+std::string_view name(Verdict verdict) {
+    switch (verdict) {
+        case Verdict::Good: return "good";
+        case Verdict::Note: return "note";
+        case Verdict::Warning: return "warning";
+        case Verdict::Bad: return "bad";
+    }
+    return "";
+}
+
+std::vector<Finding> examine(const Patient& patient) {
+    return {usb(patient),
+            permission(patient),
+            udevRule(patient),
+            hotplug(patient),
+            usbfsMemory(patient),
+            hidraw(patient),
+            store(patient),
+            daemonReached(patient)};
+}
+
+}  // namespace gonio::daemon
