@@ -59,6 +59,8 @@ Result<void> samples(const CommonOptions& common);
 Result<void> jobs(const CommonOptions& common);
 /// Ends the job that runs.
 Result<void> cancelJob(const CommonOptions& common);
+/// What the job that runs has asked a person to do is done.
+Result<void> proceedJob(const CommonOptions& common);
 
 struct SessionOptions {
     std::string name;  ///< empty: its date

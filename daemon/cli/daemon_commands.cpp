@@ -137,16 +137,27 @@ Result<void> jobs(const CommonOptions& common) {
     });
 }
 
-Result<void> cancelJob(const CommonOptions& common) {
+/// Asks something of the job that runs.
+Result<void> tellJob(const CommonOptions& common,
+                     const std::string& wish,
+                     const std::string& said) {
     const DaemonClient client(common.socketPath());
     const auto now = client.get("/api/v1/status");
     if (!now) return now.error();
     const Json job = Json::parse(*now)["job"];
-    if (!job.is_object()) return Error{ErrorKind::Usage, "jobs cancel: no job is running"};
+    if (!job.is_object()) return Error{ErrorKind::Usage, "jobs " + wish + ": no job is running"};
     const std::string id = std::to_string(job["id"].get<std::int64_t>());
-    return shown(common, client.post("/api/v1/jobs/" + id + "/cancel", "{}"), [&](const Json&) {
-        std::cout << "job " << id << " ends at its next step\n";
+    return shown(common, client.post("/api/v1/jobs/" + id + "/" + wish, "{}"), [&](const Json&) {
+        std::cout << "job " << id << " " << said << "\n";
     });
+}
+
+Result<void> cancelJob(const CommonOptions& common) {
+    return tellJob(common, "cancel", "ends at its next step");
+}
+
+Result<void> proceedJob(const CommonOptions& common) {
+    return tellJob(common, "proceed", "goes on");
 }
 
 Result<void> newSession(const CommonOptions& common, const SessionOptions& options) {

@@ -47,6 +47,7 @@ private:
     std::string wanted_;      ///< of the operator
     bool ended_ = false;
     bool cancelled_ = false;
+    std::optional<Error> error_;  ///< how it ended, when not well
 };
 
 Result<void> FollowedJob::begin(const Json& request) {
@@ -74,6 +75,9 @@ bool FollowedJob::take(const StreamEvent& event) {
         wanted_ = data["wanted"];
     } else if (event.type == "job") {
         ended_ = data["state"] != "running";
+        if (data.contains("problem")) {
+            error_ = Error{problemKind(data["problem"].get<std::string>()), data["message"]};
+        }
     }
     return !ended_ && wanted_.empty();
 }
@@ -127,13 +131,10 @@ Result<Json> FollowedJob::run(const Json& request) {
     const Result<void> watched = watch();
     progress_.clear();
     if (!watched) return watched.error();
-    const auto text = client_.get(at());
-    if (!text) return text.error();
-    const Json job = Json::parse(*text);
-    if (job["problem"].is_string()) {
-        return Error{problemKind(job["problem"].get<std::string>()), job["message"]};
-    }
-    return job["result"];
+    if (error_) return *error_;
+    const auto job = client_.get(at());
+    if (!job) return job.error();
+    return Json::parse(*job)["result"];
 }
 
 void print(const CommonOptions& common, const Json& json, const std::string& line) {

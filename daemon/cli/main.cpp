@@ -153,6 +153,9 @@ void Program::addDaemon() {
     CLI::App* parent =
         command(app, "jobs", "the newest jobs and how they ended", [this] { return jobs(common); });
     command(*parent, "cancel", "end the job that runs", [this] { return cancelJob(common); });
+    command(*parent, "proceed", "what the job has asked for is done", [this] {
+        return proceedJob(common);
+    });
     CLI::App* sub = command(app, "watch", "print what happens, until Ctrl-C", [this] {
         return daemon::watch(common, watch);
     });

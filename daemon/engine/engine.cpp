@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "daemon/problem.h"
 #include "proc/core/log.h"
 #include "proc/core/number_text.h"
 
@@ -292,7 +293,10 @@ void Engine::tellJob(const JobRecord& job) {
               {"kind", job.kind},
               {"name", job.name},
               {"state", std::string(name(job.state))}};
-    if (job.error) json["message"] = job.error->message;
+    if (job.error) {
+        json["problem"] = std::string(problemName(job.error->kind));
+        json["message"] = job.error->message;
+    }
     tell("job", dump(json), true);
 }
 
