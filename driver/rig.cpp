@@ -11,6 +11,9 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr int kRecaptures = 3;  // per capture; PROTOCOL.md 3, "Repair"
+// Frames that frame RAM must hold to overlap captures: the last one, that it can be sent again, the
+// next one, and the one that is exposed meanwhile.
+constexpr int kFramesToOverlap = 3;
 constexpr int kCaptureIds = 8;  // ids tried in a row when frame RAM still holds the first
 constexpr std::uint64_t kMaxPlanStep = (std::uint64_t{1} << 48) - 1;
 
@@ -221,7 +224,8 @@ Result<void> Rig::attempt(const CaptureRequest& request,
     const Result<ArmedCapture> armed = takeUpOrArm(request, progress.toArm());
     if (!armed) return armed.error();
     return Collector(*link_, assembler_).collect(*armed, progress, [&]() -> Result<void> {
-        if (!ahead.next || !request.keepLit) return {};
+        const bool overlaps = request.keepLit && link_->ident().frameRam >= kFramesToOverlap;
+        if (!ahead.next || !overlaps) return {};
         return armAhead(*ahead.next);
     });
 }

@@ -89,7 +89,8 @@ public:
     /// `ahead.next` is armed as soon as the frames of `request` have been exposed: the next
     /// capture() of the same request finds it done, or on its way. Any other, and darken(),
     /// configure() and close(), abort it; nothing of it is ever seen. After a request that is not
-    /// to be kept lit nothing is armed, nor what the rig refuses: its own capture() then says why.
+    /// to be kept lit nothing is armed, nor on a rig that keeps fewer than three frames for RESEND,
+    /// nor what the rig refuses: its own capture() then says why.
     Result<Capture> capture(const CaptureRequest& request, const ArmAhead& ahead = {});
     /// All LEDs dark.
     Result<void> darken();

@@ -687,6 +687,17 @@ TEST(Rig, NothingIsArmedAheadOfTheDark) {
     EXPECT_EQ(device.count(Op::Abort), 0);
 }
 
+TEST(Rig, RigThatKeepsFewFramesIsArmedSerially) {
+    for (const std::uint16_t kept : {std::uint16_t{2}, std::uint16_t{3}}) {
+        ScriptedRig device;
+        device.ident.frameRam = kept;
+        Rig rig = configured(device);
+        expectAsUndisturbed(rig.capture(kRequest, {kNext}));
+        EXPECT_EQ(device.count(Op::Arm), kept == 2 ? 1 : 2);
+        expectTheNextAsUndisturbed(rig.capture(kNext));
+    }
+}
+
 TEST(Rig, RefusesANextRequestOutOfItsDomain) {
     ScriptedRig device;
     Rig rig = configured(device);
