@@ -1,22 +1,79 @@
 #pragma once
-// Work that takes long while a rig is claimed: it runs in a thread of its own, and the owner of the
-// rig feeds the heartbeat meanwhile.
+// Work in another thread while the rig goes on: a merge beside the next state's captures, or a long
+// phase during which nothing else feeds the rig's heartbeat. What goes in: a task that touches
+// neither the rig nor anything that changes meanwhile. What comes out: its value, or its Error; an
+// exception ends as an Internal Error. Only the caller's thread touches the rig. A rig that is lost
+// meanwhile does not cost the task its value: the next call on the rig says so. Destruction waits
+// for the task.
 
 #include <chrono>
+#include <exception>
 #include <future>
+#include <string>
+#include <type_traits>
+#include <utility>
 
 #include "driver/rig.h"
 
 namespace gonio::daemon {
 
-/// What `work` answers. The rig stays the calling thread's.
-template <class Work>
-auto alongside(driver::Rig& rig, Work work) {
-    constexpr auto kPause = std::chrono::milliseconds(200);
-    auto answer = std::async(std::launch::async, std::move(work));
-    // A rig that is lost meanwhile is found out by whoever needs it next.
-    while (answer.wait_for(kPause) != std::future_status::ready) (void)rig.keepAlive();
-    return answer.get();
+/// Result<T> for a task that returns T or Result<T>.
+template <class Answer>
+struct AsResult {
+    using Type = Result<Answer>;
+};
+template <class Value>
+struct AsResult<Result<Value>> {
+    using Type = Result<Value>;
+};
+
+template <class Value>
+class Alongside {
+public:
+    /// Begins `task`.
+    template <class Task>
+    explicit Alongside(Task task)
+        // Either policy: where no thread can be had, the task runs in await().
+        : answer_(std::async(std::launch::async | std::launch::deferred,
+                             [task = std::move(task)]() mutable { return run(task); })) {}
+
+    /// Waits, and keeps the rig alive meanwhile. Once.
+    Result<Value> await(driver::Rig& rig) {
+        bool alive = true;
+        while (answer_.wait_for(kFeeding) == std::future_status::timeout) {
+            if (alive) alive = rig.keepAlive().has_value();
+        }
+        return answer_.get();
+    }
+
+private:
+    // The rig wants a PING at least every heartbeat / 4, 500 ms as the link claims it.
+    static constexpr std::chrono::milliseconds kFeeding{200};
+
+    template <class Task>
+    static Result<Value> run(Task& task) {
+        try {
+            if constexpr (std::is_void_v<std::invoke_result_t<Task&>>) {
+                task();
+                return {};
+            } else {
+                return task();
+            }
+        } catch (const std::exception& e) {
+            return Error{ErrorKind::Internal, std::string("beside the rig: ") + e.what()};
+        }
+    }
+
+    std::future<Result<Value>> answer_;
+};
+
+template <class Task>
+Alongside(Task) -> Alongside<typename AsResult<std::invoke_result_t<Task&>>::Type::value_type>;
+
+/// The task's value; the rig is kept alive until it is there.
+template <class Task>
+[[nodiscard]] auto alongside(driver::Rig& rig, Task task) {
+    return Alongside(std::move(task)).await(rig);
 }
 
 }  // namespace gonio::daemon

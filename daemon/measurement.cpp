@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
 
+#include "daemon/alongside.h"
+#include "daemon/gathering.h"
 #include "proc/core/median.h"
 #include "proc/core/number_text.h"
 #include "proc/optics/spot.h"
@@ -20,23 +24,6 @@ constexpr int kMirrorFrames = 4;
 constexpr double kWhiteOverBlack = 50;
 
 Direction lightAt(Radians incidence) { return Direction::fromSpherical(incidence, Radians(0)); }
-
-/// The bracket's captures, in the order in which they were taken.
-std::vector<proc::RawExposure> describeBracket(const std::vector<Frame>& frames, Band band) {
-    std::vector<proc::RawExposure> list;
-    for (const Frame& frame : frames) {
-        if (list.empty() || list.back().captureId != frame.captureId) {
-            list.push_back({.captureId = frame.captureId,
-                            .granted = frame.exposure.granted,
-                            .level = frame.levels[band],
-                            .frames = 0,
-                            .blackLevel = frame.blackLevel,
-                            .celsius = frame.celsius});
-        }
-        ++list.back().frames;
-    }
-    return list;
-}
 
 Result<proc::DarkLibrary> takeDarks(const Bench& bench, Sequencer& sequencer, int frames) {
     Result<std::vector<proc::DarkFrame>> darks =
@@ -70,31 +57,7 @@ Json toJson(const proc::Budget& budget) {
     return list;
 }
 
-}  // namespace
-
-Result<Window> configureWindow(driver::Rig& rig) {
-    const Size sensor = rig.identify().sensor;
-    const int side = std::min(sensor.width, sensor.height);
-    const Window window{.x = (sensor.width - side) / 2,
-                        .y = (sensor.height - side) / 2,
-                        .size = {side, side},
-                        .binning = 1};
-    const Result<void> done = rig.configure(window);
-    if (!done) return done.error();
-    return window;
-}
-
-int mirrorSteps(const Bench& bench) {
-    return static_cast<int>(bench.profile.exposures.size() +
-                            proc::mirrorWedges().size() * bench.rig.identify().ledAngles.size());
-}
-
-int placementSteps(const Bench& bench) {
-    return static_cast<int>(bench.profile.exposures.size() +
-                            kBands.size() * bench.rig.identify().ledAngles.size());
-}
-
-Result<LensRecord> measureLens(const Bench& bench, const PlaceMirror& place) {
+Result<LensRecord> takeLens(const Bench& bench, const PlaceMirror& place) {
     const Result<Window> window = configureWindow(bench.rig);
     if (!window) return window.error();
     Sequencer sequencer(bench.rig, bench.profile, bench.nextPlanStep);
@@ -133,40 +96,76 @@ Result<LensRecord> measureLens(const Bench& bench, const PlaceMirror& place) {
         .fit = std::move(*fit), .spots = static_cast<int>(spots.size()), .dateUtc = {}};
 }
 
-Result<Captured> measurePlacement(const Bench& bench,
+Result<Captured> capturePlacement(const Bench& bench,
                                   const proc::LensMap& lens,
                                   const BracketPlan& plan,
                                   int darkFrames) {
     const Result<Window> window = configureWindow(bench.rig);
     if (!window) return window.error();
-    Captured captured;
     Sequencer sequencer(bench.rig, bench.profile, bench.nextPlanStep);
     const Result<proc::DarkLibrary> darks = takeDarks(bench, sequencer, darkFrames);
     if (!darks) return darks.error();
     const Stopwatch preparing(bench.clock);
-    const proc::Binning binning(lens, *window, kField);
-    captured.compute += preparing.elapsed();
-    captured.signals.resize(bench.rig.identify().ledAngles.size());
-    double chiSquare = 0;
-    double freedom = 0;
-    for (const State state : sequencer.states()) {
-        const auto frames = sequencer.bracket(state, plan);
+    const auto binning = alongside(bench.rig, [&] { return proc::Binning(lens, *window, kField); });
+    if (!binning) return binning.error();
+    const Seconds prepared = preparing.elapsed();
+    Gathering gathering(
+        bench.rig,
+        {.darks = *darks, .binning = *binning, .noise = bench.profile.noise, .clock = bench.clock});
+    const std::vector<State> states = sequencer.states();
+    for (std::size_t i = 0; i < states.size(); ++i) {
+        const auto then = i + 1 < states.size() ? std::optional(states[i + 1]) : std::nullopt;
+        Result<std::vector<Frame>> frames = sequencer.bracket(states[i], plan, then);
         if (!frames) return frames.error();
-        const Stopwatch processing(bench.clock);
-        Result<proc::MergedState> merged =
-            proc::merge(*frames, state.band, *darks, bench.profile.noise);
-        if (!merged) return merged.error();
-        captured.signals[static_cast<std::size_t>(state.led)][index(state.band)] =
-            binning.bin(*merged);
-        captured.compute += processing.elapsed();
-        chiSquare += merged->chiSquare;
-        freedom += static_cast<double>(merged->freedom);
-        captured.raw.states.push_back(
-            {.merged = std::move(*merged), .bracket = describeBracket(*frames, state.band)});
-        if (Result<void> on = bench.step(stateName(state)); !on) return on.error();
+        if (Result<void> on = gathering.add(states[i], std::move(*frames)); !on) return on.error();
+        if (Result<void> on = bench.step(stateName(states[i])); !on) return on.error();
     }
-    captured.chiSquarePerFreedom = freedom > 0 ? chiSquare / freedom : 1;
+    Result<Captured> captured = gathering.finish();
+    if (captured) captured->compute += prepared;
     return captured;
+}
+
+/// However a measurement ended: dark, and nothing on its way. A rig that does not hear it goes dark
+/// by itself; what was measured is measured.
+template <class Measured>
+Measured thenDark(driver::Rig& rig, Measured measured) {
+    (void)rig.darken();
+    return measured;
+}
+
+}  // namespace
+
+Result<Window> configureWindow(driver::Rig& rig) {
+    const Size sensor = rig.identify().sensor;
+    const int side = std::min(sensor.width, sensor.height);
+    const Window window{.x = (sensor.width - side) / 2,
+                        .y = (sensor.height - side) / 2,
+                        .size = {side, side},
+                        .binning = 1};
+    const Result<void> done = rig.configure(window);
+    if (!done) return done.error();
+    return window;
+}
+
+int mirrorSteps(const Bench& bench) {
+    return static_cast<int>(bench.profile.exposures.size() +
+                            proc::mirrorWedges().size() * bench.rig.identify().ledAngles.size());
+}
+
+int placementSteps(const Bench& bench) {
+    return static_cast<int>(bench.profile.exposures.size() +
+                            kBands.size() * bench.rig.identify().ledAngles.size());
+}
+
+Result<LensRecord> measureLens(const Bench& bench, const PlaceMirror& place) {
+    return thenDark(bench.rig, takeLens(bench, place));
+}
+
+Result<Captured> measurePlacement(const Bench& bench,
+                                  const proc::LensMap& lens,
+                                  const BracketPlan& plan,
+                                  int darkFrames) {
+    return thenDark(bench.rig, capturePlacement(bench, lens, plan, darkFrames));
 }
 
 Result<void> checkWhite(const PlacementSignals& white, const PlacementSignals& black) {

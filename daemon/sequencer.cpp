@@ -3,19 +3,20 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 namespace gonio::daemon {
 namespace {
 
 constexpr double kFullLevel = 65535;
-// The field of view is a disc in a square window: 74 % of its pixels. When nearly all of them are
-// saturated, a longer exposure tells nothing new.
-constexpr double kDiscShare = 0.70;
 
-std::uint32_t mostSaturated(const std::vector<Frame>& frames) {
-    std::uint32_t most = 0;
-    for (const Frame& frame : frames) most = std::max(most, frame.saturatedPixels);
-    return most;
+/// Without its plan step.
+driver::CaptureRequest toTake(State state, const Shot& shot, int frames) {
+    const auto drive = static_cast<std::uint16_t>(std::lround(shot.level * kFullLevel));
+    return {.led = state.led,
+            .levels = LedLevels::only(state.band, std::max<std::uint16_t>(1, drive)),
+            .exposure = shot.exposure,
+            .frames = frames};
 }
 
 }  // namespace
@@ -43,62 +44,75 @@ std::vector<State> Sequencer::states() const {
     return all;
 }
 
+driver::CaptureRequest Sequencer::numbered(driver::CaptureRequest request) {
+    request.planStep = nextPlanStep_++;
+    return request;
+}
+
+/// The one that was prepared, if this is it: it may be on its way already.
+driver::CaptureRequest Sequencer::begin(driver::CaptureRequest first) {
+    if (const auto ready = std::exchange(prepared_, std::nullopt)) {
+        first.planStep = ready->planStep;
+        if (first == *ready) return first;
+    }
+    return numbered(first);
+}
+
+driver::CaptureRequest Sequencer::prepare(State state, const BracketPlan& plan) {
+    if (!prepared_) {
+        const Shot first = BracketLadder(profile_, plan).advance().shot;
+        prepared_ = numbered(toTake(state, first, plan.frames));
+    }
+    return *prepared_;
+}
+
 Result<std::vector<Frame>> Sequencer::expose(State state,
                                              double level,
                                              Microseconds exposure,
                                              int frames) {
-    const auto drive = static_cast<std::uint16_t>(std::lround(level * kFullLevel));
     Result<driver::Capture> capture =
-        rig_.capture({.planStep = nextPlanStep_++,
-                      .led = state.led,
-                      .levels = LedLevels::only(state.band, std::max<std::uint16_t>(1, drive)),
-                      .exposure = exposure,
-                      .frames = frames});
+        rig_.capture(numbered(toTake(state, {.level = level, .exposure = exposure}, frames)));
     if (!capture) return capture.error();
     return std::move(capture->frames);
 }
 
-Result<std::vector<Frame>> Sequencer::bracket(State state, const BracketPlan& plan) {
+Result<std::vector<Frame>> Sequencer::bracket(State state,
+                                              const BracketPlan& plan,
+                                              std::optional<State> then) {
+    BracketLadder ladder(profile_, plan);
     std::vector<Frame> all;
-    std::uint32_t saturated = 0;
-    const auto take = [&](double level, Microseconds exposure) -> Result<void> {
-        Result<std::vector<Frame>> frames = expose(state, level, exposure, plan.frames);
-        if (!frames) return frames.error();
-        saturated = mostSaturated(*frames);
-        std::move(frames->begin(), frames->end(), std::back_inserter(all));
-        return {};
-    };
-    const auto& ladder = profile_.exposures;
-    const int last = static_cast<int>(ladder.size()) - 1;
-    const int longest = plan.longest < 0 ? last : std::min(plan.longest, last);
-    const int first = std::clamp(plan.first, 0, longest);
-    const auto rung = [&](int i) { return ladder[static_cast<std::size_t>(i)]; };
-
-    if (Result<void> taken = take(1, rung(first)); !taken) return taken.error();
-    const std::uint32_t saturatedAtFirst = saturated;
-    for (int i = first - 1; i >= 0 && saturated > 0; --i) {
-        if (Result<void> taken = take(1, rung(i)); !taken) return taken.error();
-    }
-    for (std::size_t i = 0; plan.dim && i < profile_.dimLevels.size() && saturated > 0; ++i) {
-        if (Result<void> taken = take(profile_.dimLevels[i], rung(0)); !taken) return taken.error();
-    }
-    const double everything = kDiscShare * static_cast<double>(all.front().pixels.size().pixels());
-    saturated = saturatedAtFirst;
-    for (int i = first + 1; i <= longest && saturated < everything; ++i) {
-        if (Result<void> taken = take(1, rung(i)); !taken) return taken.error();
+    NextShot now = ladder.advance();
+    driver::CaptureRequest wanted = begin(toTake(state, now.shot, plan.frames));
+    while (now.outlook == Outlook::Shot) {
+        NextShot next = ladder.advance();
+        driver::ArmAhead ahead;
+        if (next.outlook == Outlook::Shot)
+            ahead.next = numbered(toTake(state, next.shot, plan.frames));
+        if (next.outlook == Outlook::Over && then) ahead.next = prepare(*then, plan);
+        Result<driver::Capture> capture = rig_.capture(wanted, ahead);
+        if (!capture) return capture.error();
+        ladder.seen(capture->frames);
+        std::move(capture->frames.begin(), capture->frames.end(), std::back_inserter(all));
+        if (next.outlook == Outlook::Shot) {
+            wanted = *ahead.next;
+        } else if (next = ladder.advance(); next.outlook == Outlook::Shot) {
+            wanted = numbered(toTake(state, next.shot, plan.frames));
+        }
+        now = next;
     }
     return all;
 }
 
 Result<std::vector<proc::DarkFrame>> Sequencer::darks(int frames,
                                                       const std::function<Result<void>()>& done) {
+    std::vector<driver::CaptureRequest> requests;
+    for (Microseconds exposure : profile_.exposures)
+        requests.push_back(numbered({.exposure = exposure, .frames = frames}));
     std::vector<proc::DarkFrame> darks;
-    for (Microseconds exposure : profile_.exposures) {
-        const auto taken = rig_.capture({.planStep = nextPlanStep_++,
-                                         .led = std::nullopt,
-                                         .levels = {},
-                                         .exposure = exposure,
-                                         .frames = frames});
+    for (std::size_t i = 0; i < requests.size(); ++i) {
+        driver::ArmAhead ahead;
+        if (i + 1 < requests.size()) ahead.next = requests[i + 1];
+        const auto taken = rig_.capture(requests[i], ahead);
         if (!taken) return taken.error();
         Result<proc::DarkFrame> dark = proc::averageDark(taken->frames, profile_.noise);
         if (!dark) return dark.error();

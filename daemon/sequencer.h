@@ -1,28 +1,21 @@
 #pragma once
-// Takes the frames of whole measurements: dark ladders, brackets of one state, all states of a
-// placement. A bracket starts at an exposure that is safe for white, goes to shorter exposures and
-// dimmer LEDs while anything is saturated, and to longer ones until everything is. Each capture has
-// a plan step of its own, so that no two share their noise.
+// Takes the frames of whole measurements: dark ladders, brackets of one state (bracket_ladder.h),
+// all states of a placement. The next capture is armed ahead where it is known or foreseen, so that
+// exposures overlap transfers. Each capture has a plan step of its own, so that no two share their
+// noise, and the same placement always makes the same captures.
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
+#include "daemon/bracket_ladder.h"
 #include "daemon/profile.h"
 #include "driver/rig.h"
 #include "proc/core/effort.h"
 #include "proc/radiance/dark.h"
-#include "proc/radiance/merge.h"
 
 namespace gonio::daemon {
-
-/// How many frames a bracket takes of each exposure, and how far it reaches.
-struct BracketPlan {
-    int frames = 1;
-    bool dim = true;   ///< use dimmer LED levels where the shortest exposure saturates
-    int longest = -1;  ///< index of the longest exposure of the ladder; -1: the last
-    int first = 1;     ///< index of the exposure to begin with
-};
 
 /// The bracket that an effort asks for of a sample.
 [[nodiscard]] BracketPlan sampleBracket(Effort effort);
@@ -39,8 +32,11 @@ public:
 
     /// LEDs x R, G, B, in this order.
     [[nodiscard]] std::vector<State> states() const;
-    /// All frames of one state's bracket.
-    [[nodiscard]] Result<std::vector<Frame>> bracket(State state, const BracketPlan& plan);
+    /// All frames of one state's bracket. The first capture of `then`, if its bracket comes next
+    /// and by the same plan, is armed ahead with the last of this one.
+    [[nodiscard]] Result<std::vector<Frame>> bracket(State state,
+                                                     const BracketPlan& plan,
+                                                     std::optional<State> then = {});
     /// `frames` of one level and exposure.
     [[nodiscard]] Result<std::vector<Frame>> expose(State state,
                                                     double level,
@@ -52,10 +48,15 @@ public:
         int frames, const std::function<Result<void>()>& done);
 
 private:
+    [[nodiscard]] driver::CaptureRequest numbered(driver::CaptureRequest request);
+    [[nodiscard]] driver::CaptureRequest begin(driver::CaptureRequest first);
+    [[nodiscard]] driver::CaptureRequest prepare(State state, const BracketPlan& plan);
+
     driver::Rig& rig_;
     const RigProfile& profile_;
     std::uint64_t& nextPlanStep_;
     int leds_;
+    std::optional<driver::CaptureRequest> prepared_;  ///< the next bracket's first
 };
 
 }  // namespace gonio::daemon

@@ -4,19 +4,18 @@
 #include <cmath>
 #include <limits>
 #include <utility>
-#include <variant>
 
 namespace gonio::driver {
 namespace {
 
 using namespace std::chrono_literals;
 
-constexpr int kResends = 2;     // per frame; PROTOCOL.md 3, "Repair"
-constexpr int kRecaptures = 3;  // likewise
+constexpr int kRecaptures = 3;  // per capture; PROTOCOL.md 3, "Repair"
+// Frames that frame RAM must hold to overlap captures: the last one, that it can be sent again, the
+// next one, and the one that is exposed meanwhile.
+constexpr int kFramesToOverlap = 3;
 constexpr int kCaptureIds = 8;  // ids tried in a row when frame RAM still holds the first
-constexpr std::uint32_t kCanResend = 1U << 2;  // capability bit
 constexpr std::uint64_t kMaxPlanStep = (std::uint64_t{1} << 48) - 1;
-constexpr std::size_t kReasonsKept = 8;
 
 Error usage(const std::string& what) { return {ErrorKind::Usage, what}; }
 
@@ -36,50 +35,6 @@ bool fits16(int value) { return value >= 0 && value <= std::numeric_limits<std::
 
 }  // namespace
 
-struct Rig::Progress {
-    std::vector<std::optional<Frame>> frames;
-    std::vector<int> asked;      ///< RESENDs of this attempt, by frame
-    std::vector<bool> hopeless;  ///< of this attempt, by frame
-    bool failed = false;         ///< this attempt lost or refused a frame
-    int discarded = 0, resends = 0, recaptures = 0;
-    std::vector<std::string> reasons;
-
-    explicit Progress(int n) : frames(static_cast<std::size_t>(n)) {}
-
-    void begin() {
-        asked.assign(frames.size(), 0);
-        hopeless.assign(frames.size(), false);
-        failed = false;
-    }
-    /// Wanted, and still to be hoped for in this attempt.
-    [[nodiscard]] bool waitsFor(int frame) const {
-        const auto i = static_cast<std::size_t>(frame);
-        return !frames[i] && !hopeless[i];
-    }
-    [[nodiscard]] bool waits() const {
-        for (int i = 0; i < static_cast<int>(frames.size()); ++i) {
-            if (waitsFor(i)) return true;
-        }
-        return false;
-    }
-    /// Frames up to the last one that is missing: those must be armed again.
-    [[nodiscard]] int toArm() const {
-        const auto last = std::find(frames.rbegin(), frames.rend(), std::nullopt);
-        return static_cast<int>(frames.rend() - last);
-    }
-    void giveUp(int frame, const std::string& why) {
-        hopeless[static_cast<std::size_t>(frame)] = true;
-        failed = true;
-        if (reasons.size() < kReasonsKept)
-            reasons.push_back("frame " + std::to_string(frame) + ": " + why);
-    }
-    [[nodiscard]] std::string evidence() const {
-        std::string list;
-        for (const std::string& reason : reasons) list += (list.empty() ? "" : "; ") + reason;
-        return list;
-    }
-};
-
 Result<Rig> Rig::open(Transport& transport, std::uint64_t sessionId) {
     return open(transport, LinkOptions{.sessionId = sessionId});
 }
@@ -95,8 +50,7 @@ Result<Rig> Rig::open(Transport& transport, const LinkOptions& options) {
 /// A claim taken up again finds whatever its last host left behind.
 Result<void> Rig::start() {
     if (!link_->resumed()) return {};
-    if (auto idle = link_->command(Op::Abort); !idle) return idle.error();
-    return flush();
+    return abort();
 }
 
 Rig::~Rig() { (void)close(); }
@@ -139,6 +93,9 @@ Result<void> Rig::configure(const Window& window, PixelFormat format) {
                           fits16(size.height) && window.binning <= 255;
     if (!wanted || !sendable) return usage(what + ": not a window of any sensor");
     geometry_.reset();
+    if (ahead_) {
+        if (auto idle = abort(); !idle) return idle.error().in(what);
+    }
     const auto granted =
         link_->command(Op::SetFormat,
                        encode(SetFormat{.format = format,
@@ -159,6 +116,9 @@ Result<void> Rig::configure(const Window& window, PixelFormat format) {
 }
 
 Result<void> Rig::darken() {
+    if (ahead_) {
+        if (auto idle = abort(); !idle) return idle.error().in("darken");
+    }
     const auto dark = link_->command(Op::SetLed, encode(SetLed{}));
     if (!dark) return dark.error().in("darken");
     return {};
@@ -191,40 +151,61 @@ Result<void> Rig::check(const CaptureRequest& request) const {
     return {};
 }
 
-Result<Capture> Rig::capture(const CaptureRequest& request) {
+Result<void> Rig::check(const ArmAhead& ahead) const {
+    if (!ahead.next) return {};
+    const Result<void> sound = check(*ahead.next);
+    if (!sound) return sound.error().in("armed ahead, " + describe(*ahead.next));
+    return {};
+}
+
+/// Leaves nothing armed but `request`, and that only when all is well.
+Result<void> Rig::admit(const CaptureRequest& request, const ArmAhead& ahead) {
+    Result<void> sound = check(request);
+    if (sound) sound = check(ahead);
+    if (!ahead_ || (sound && ahead_->request == request)) return sound;
+    const Result<void> idle = abort();
+    return sound ? idle : sound;
+}
+
+Result<Capture> Rig::capture(const CaptureRequest& request, const ArmAhead& ahead) {
     const std::string what = describe(request);
-    if (auto sound = check(request); !sound) return sound.error().in(what);
+    if (auto admitted = admit(request, ahead); !admitted) return admitted.error().in(what);
     const Anomalies before = anomalies();
-    Progress progress(request.frames);
-    Result<void> done = fill(request, progress);
+    CaptureProgress progress(request.frames);
+    Result<void> done = fill(request, ahead, progress);
     if (done && !request.keepLit) done = darken();
     if (!done) {
-        makeSafe();
-        const Error& error = done.error();
-        std::string message = what + ": " + error.message + " (" +
-                              plural(progress.resends, "resend") + ", " +
-                              plural(progress.recaptures, "recapture") +
-                              "; anomalies: " + anomalies().since(before).text();
-        if (!progress.reasons.empty()) message += "; " + progress.evidence();
-        return Error{error.kind, message + ")", error.deviceStatus};
+        (void)abort();  // what cannot be reached any more goes dark by its own heartbeat
+        return failed(done.error(), progress, before).in(what);
     }
-    Capture capture{.frames = {},
-                    .anomalies = anomalies().since(before),
-                    .discarded = progress.discarded,
-                    .resends = progress.resends,
-                    .recaptures = progress.recaptures};
-    for (auto& frame : progress.frames) capture.frames.push_back(std::move(*frame));
-    return capture;
+    return Capture{.frames = progress.takeFrames(),
+                   .anomalies = anomalies().since(before),
+                   .discarded = progress.discarded,
+                   .resends = progress.resends,
+                   .recaptures = progress.recaptures};
+}
+
+/// The error with its evidence.
+Error Rig::failed(const Error& error,
+                  const CaptureProgress& progress,
+                  const Anomalies& before) const {
+    std::string message = error.message + " (" + plural(progress.resends, "resend") + ", " +
+                          plural(progress.recaptures, "recapture") +
+                          "; anomalies: " + anomalies().since(before).text();
+    if (!progress.evidence().empty()) message += "; " + progress.evidence();
+    return {error.kind, message + ")", error.deviceStatus};
 }
 
 /// Attempts until every frame is there. Early frames cost no recapture, but a rig whose settings
 /// are still not in effect after control_latency attempts does not do what it says.
-Result<void> Rig::fill(const CaptureRequest& request, Progress& progress) {
+Result<void> Rig::fill(const CaptureRequest& request,
+                       const ArmAhead& ahead,
+                       CaptureProgress& progress) {
     int early = 0;
     while (true) {
-        if (auto tried = attempt(request, progress); !tried) return tried;
+        if (auto tried = attempt(request, ahead, progress); !tried) return tried;
         if (progress.toArm() == 0) return {};
-        if (!progress.failed) {
+        if (!progress.failed()) {
             if (++early > link_->ident().controlLatency)
                 return Error{ErrorKind::Device, "settings do not take effect"};
         } else if (progress.recaptures == kRecaptures) {
@@ -236,12 +217,42 @@ Result<void> Rig::fill(const CaptureRequest& request, Progress& progress) {
     }
 }
 
-Result<void> Rig::attempt(const CaptureRequest& request, Progress& progress) {
+Result<void> Rig::attempt(const CaptureRequest& request,
+                          const ArmAhead& ahead,
+                          CaptureProgress& progress) {
     progress.begin();
-    const Result<FramePlan> plan = apply(request);
-    if (!plan) return plan.error();
-    if (auto armed = arm(request.planStep, progress.toArm()); !armed) return armed;
-    return collect(*plan, progress);
+    const Result<ArmedCapture> armed = takeUpOrArm(request, progress.toArm());
+    if (!armed) return armed.error();
+    return Collector(*link_, assembler_).collect(*armed, progress, [&]() -> Result<void> {
+        const bool overlaps = request.keepLit && link_->ident().frameRam >= kFramesToOverlap;
+        if (!ahead.next || !overlaps) return {};
+        return armAhead(*ahead.next);
+    });
+}
+
+/// What was armed ahead is this request, or admit() would have aborted it; a later attempt finds
+/// nothing armed, or quiesce() would have.
+Result<ArmedCapture> Rig::takeUpOrArm(const CaptureRequest& request, int frames) {
+    if (const std::optional<OnItsWay> ready = std::exchange(ahead_, std::nullopt)) {
+        assembler_.moveOn();
+        return ready->armed;
+    }
+    Result<ArmedCapture> armed = arm(request, frames);
+    if (!armed) return armed;
+    if (auto expected = assembler_.expect(armed->expected); !expected) return expected.error();
+    return armed;
+}
+
+/// A status says that the rig refused, and did nothing: then its own capture will hear it again.
+/// Without one nobody knows what the rig does.
+Result<void> Rig::armAhead(const CaptureRequest& request) {
+    const Result<ArmedCapture> armed = arm(request, request.frames);
+    if (!armed) {
+        if (armed.error().deviceStatus != 0) return {};
+        return armed.error().in("armed ahead, " + describe(request));
+    }
+    ahead_ = {.request = request, .armed = *armed};
+    return assembler_.expectNext(armed->expected);
 }
 
 Result<FramePlan> Rig::apply(const CaptureRequest& request) {
@@ -280,113 +291,31 @@ Result<FramePlan> Rig::apply(const CaptureRequest& request) {
 
 /// A capture_id that frame RAM still holds is refused with BAD_ARG (a host that came back repeats
 /// its plan step): the next attempt's is free.
-Result<void> Rig::arm(std::uint64_t planStep, int frames) {
-    if (planStep != lastStep_) lastAttempt_ = 0;
-    lastStep_ = planStep;
-    Result<void> armed;
-    for (int tries = 0; tries < kCaptureIds; ++tries) {
-        // From 1, so that no capture_id is 0; 65535 attempts at one step wrap.
-        lastAttempt_ = static_cast<std::uint16_t>(lastAttempt_ == 0xFFFF ? 1 : lastAttempt_ + 1);
-        const ExpectedCapture expected{.bootId = link_->ident().bootId,
-                                       .captureId = planStep << 16 | lastAttempt_,
-                                       .frames = frames,
-                                       .frameBytes = geometry_->frameBytes,
-                                       .maxChunkPayload = link_->ident().maxChunkPayload};
-        if (auto sized = assembler_.expect(expected); !sized) return sized;
+Result<ArmedCapture> Rig::arm(const CaptureRequest& request, int frames) {
+    const Result<FramePlan> plan = apply(request);
+    if (!plan) return plan.error();
+    ArmedCapture armed{.expected = {.bootId = link_->ident().bootId,
+                                    .captureId = 0,
+                                    .frames = frames,
+                                    .frameBytes = geometry_->frameBytes,
+                                    .maxChunkPayload = link_->ident().maxChunkPayload},
+                       .plan = *plan};
+    for (int tries = 1;; ++tries) {
+        armed.expected.captureId = ids_.next(request.planStep);
         const auto first = link_->command(Op::Arm,
-                                          encode(Arm{.captureId = expected.captureId,
+                                          encode(Arm{.captureId = armed.expected.captureId,
                                                      .frames = static_cast<std::uint16_t>(frames),
                                                      .trigger = 0}));
-        if (first) return {};
-        armed = first.error();
-        if (armed.error().deviceStatus != status::kBadArg) break;
-    }
-    return armed;
-}
-
-/// PROTOCOL.md 2: a frame is overdue after settling, exposure, two frame periods and 500 ms. Every
-/// new chunk starts the wait anew; there are finitely many of them.
-Nanoseconds Rig::patience(const Exposure& exposure) const {
-    return exposure.granted + 2 * Nanoseconds(Microseconds(link_->limits().framePeriodUs)) +
-           Nanoseconds(std::chrono::milliseconds(link_->ident().ledSettleMs)) + 500ms;
-}
-
-Result<void> Rig::collect(const FramePlan& plan, Progress& progress) {
-    const Nanoseconds wait = patience(plan.exposure);
-    Nanoseconds deadline = link_->clock().now() + wait;
-    while (progress.waits()) {
-        const Nanoseconds left = std::max(Nanoseconds{0}, deadline - link_->clock().now());
-        const auto transfer = link_->readBulk(left);
-        if (!transfer) return transfer.error();
-        if (*transfer && assembler_.feed(**transfer)) deadline = link_->clock().now() + wait;
-        while (const auto wire = assembler_.take()) accept(*wire, plan, progress);
-        if (const auto& aborted = assembler_.aborted()) {
-            return Error{ErrorKind::Device,
-                         "the rig aborted frame number " + std::to_string(aborted->frameNumber) +
-                             ": " + statusName(aborted->reason),
-                         aborted->reason};
-        }
-        std::vector<MissingChunks> again = assembler_.lost();
-        if (link_->clock().now() >= deadline) {
-            again.clear();
-            for (int i = 0; i < static_cast<int>(progress.frames.size()); ++i) {
-                if (const auto chunks = assembler_.missing(i)) again.push_back(*chunks);
-            }
-            deadline = link_->clock().now() + wait;
-        }
-        for (const MissingChunks& chunks : again) {
-            if (!progress.waitsFor(chunks.frame)) continue;
-            if (auto asked = askAgain(chunks, progress); !asked) return asked;
-        }
-    }
-    return {};
-}
-
-void Rig::accept(const WireFrame& wire, const FramePlan& plan, Progress& progress) {
-    if (!progress.waitsFor(wire.index)) return;
-    auto verdict = judge(wire, plan);
-    if (auto* frame = std::get_if<Frame>(&verdict)) {
-        progress.frames[static_cast<std::size_t>(wire.index)] = std::move(*frame);
-    } else if (const auto* rejected = std::get_if<Rejected>(&verdict)) {
-        progress.giveUp(wire.index, rejected->why);
-    } else {
-        progress.hopeless[static_cast<std::size_t>(wire.index)] = true;
-        ++progress.discarded;
+        if (first) return armed;
+        if (first.error().deviceStatus != status::kBadArg || tries == kCaptureIds)
+            return first.error();
     }
 }
 
-Result<void> Rig::askAgain(const MissingChunks& chunks, Progress& progress) {
-    int& asked = progress.asked[static_cast<std::size_t>(chunks.frame)];
-    const std::string range =
-        "chunks " + std::to_string(chunks.first) + ".." + std::to_string(chunks.last) + " missing";
-    if ((link_->ident().capabilities & kCanResend) == 0) {
-        progress.giveUp(chunks.frame, range + ", the rig cannot resend");
-        return {};
-    }
-    if (asked == kResends) {
-        progress.giveUp(chunks.frame, range + " after " + plural(asked, "RESEND"));
-        return {};
-    }
-    ++asked;
-    ++progress.resends;
-    const auto sent =
-        link_->command(Op::Resend,
-                       encode(Resend{.captureId = lastStep_ << 16 | lastAttempt_,
-                                     .frame = static_cast<std::uint16_t>(chunks.frame),
-                                     .firstChunk = chunks.first,
-                                     .lastChunk = chunks.last}));
-    if (sent) {
-        assembler_.askedFor(chunks);
-        return {};
-    }
-    const int code = sent.error().deviceStatus;
-    if (code != status::kFrameGone && code != status::kBadRange) return sent.error();
-    progress.giveUp(chunks.frame, range + ", " + statusName(static_cast<std::uint16_t>(code)));
-    return {};
-}
-
-/// Idle, with nothing of the last attempt on its way.
+/// Idle, with nothing on its way: not of the last attempt, nor of what was armed ahead.
 Result<void> Rig::quiesce() {
+    ahead_.reset();
+    assembler_.forgetNext();
     const Result<Status> now = link_->freshStatus();
     if (!now) return now.error();
     if (now->state == RigState::Fault) {
@@ -399,16 +328,19 @@ Result<void> Rig::quiesce() {
     return flush();
 }
 
+/// Dark and idle at once, with nothing on its way.
+Result<void> Rig::abort() {
+    ahead_.reset();
+    assembler_.forgetNext();
+    if (auto idle = link_->command(Op::Abort); !idle) return idle.error();
+    return flush();
+}
+
 Result<void> Rig::flush() {
     const auto next = link_->command(Op::Flush);
     if (!next) return next.error();
     assembler_.flushed(decodeU32(*next));
     return {};
-}
-
-/// ABORT is dark at once. What cannot be reached any more goes dark by its own heartbeat.
-void Rig::makeSafe() {
-    if (link_->command(Op::Abort)) (void)flush();
 }
 
 }  // namespace gonio::driver

@@ -8,6 +8,11 @@
 // capture holds what an undisturbed one would. After an error, and after close(), the LEDs are
 // dark. Before configure(): capture() is a Usage error. While nothing is called nobody feeds the
 // heartbeat: call keepAlive() when busy elsewhere, or the rig goes dark by itself.
+//
+// A capture may be armed ahead: it is exposed while the frames of the one before are still sent
+// (docs/decisions/0002). Its commands are sent when the last frame before it has been exposed,
+// which the stream says: not the host's clock, so that the same requests always make the same
+// commands. Frames of the two are told apart by capture_id, and each keeps its repairs.
 
 #include <cstdint>
 #include <memory>
@@ -16,7 +21,8 @@
 #include <vector>
 
 #include "driver/assembler.h"
-#include "driver/frame_plan.h"
+#include "driver/capture_ids.h"
+#include "driver/collector.h"
 #include "driver/link.h"
 #include "proc/core/frame.h"
 
@@ -45,6 +51,12 @@ struct CaptureRequest {
     double gainDb = 0;
     int frames = 1;
     bool keepLit = true;  ///< false: dark at the end too
+    bool operator==(const CaptureRequest&) const = default;
+};
+
+/// What will be asked for next, as far as it is known.
+struct ArmAhead {
+    std::optional<CaptureRequest> next{};
 };
 
 /// Exactly the frames asked for, in order of their index, and what it took to get them.
@@ -74,7 +86,12 @@ public:
     [[nodiscard]] RigInfo identify() const;
     /// The window that is read from now on. Taken exactly, or an error.
     Result<void> configure(const Window& window, PixelFormat format = PixelFormat::Mono12Packed);
-    Result<Capture> capture(const CaptureRequest& request);
+    /// `ahead.next` is armed as soon as the frames of `request` have been exposed: the next
+    /// capture() of the same request finds it done, or on its way. Any other, and darken(),
+    /// configure() and close(), abort it; nothing of it is ever seen. After a request that is not
+    /// to be kept lit nothing is armed, nor on a rig that keeps fewer than three frames for RESEND,
+    /// nor what the rig refuses: its own capture() then says why.
+    Result<Capture> capture(const CaptureRequest& request, const ArmAhead& ahead = {});
     /// All LEDs dark.
     Result<void> darken();
     Result<void> keepAlive() { return link_->keepAlive(); }
@@ -92,28 +109,39 @@ private:
         PixelFormat format = PixelFormat::Mono12Packed;
         std::uint32_t frameBytes = 0;
     };
-    struct Progress;  // of one capture, over all its attempts
+    /// On its way in the rig, and expected by the assembler after the present capture.
+    struct OnItsWay {
+        CaptureRequest request;
+        ArmedCapture armed;
+    };
 
     explicit Rig(std::unique_ptr<RigLink> link) : link_(std::move(link)) {}
     Result<void> start();
     [[nodiscard]] Result<void> check(const CaptureRequest& request) const;
-    Result<void> fill(const CaptureRequest& request, Progress& progress);
-    Result<void> attempt(const CaptureRequest& request, Progress& progress);
+    [[nodiscard]] Result<void> check(const ArmAhead& ahead) const;
+    Result<void> admit(const CaptureRequest& request, const ArmAhead& ahead);
+    Result<void> fill(const CaptureRequest& request,
+                      const ArmAhead& ahead,
+                      CaptureProgress& progress);
+    Result<void> attempt(const CaptureRequest& request,
+                         const ArmAhead& ahead,
+                         CaptureProgress& progress);
+    Result<ArmedCapture> takeUpOrArm(const CaptureRequest& request, int frames);
+    Result<void> armAhead(const CaptureRequest& request);
+    Result<ArmedCapture> arm(const CaptureRequest& request, int frames);
     Result<FramePlan> apply(const CaptureRequest& request);
-    Result<void> arm(std::uint64_t planStep, int frames);
-    Result<void> collect(const FramePlan& plan, Progress& progress);
-    void accept(const WireFrame& wire, const FramePlan& plan, Progress& progress);
-    Result<void> askAgain(const MissingChunks& chunks, Progress& progress);
     Result<void> quiesce();
+    Result<void> abort();
     Result<void> flush();
-    void makeSafe();
-    [[nodiscard]] Nanoseconds patience(const Exposure& exposure) const;
+    [[nodiscard]] Error failed(const Error& error,
+                               const CaptureProgress& progress,
+                               const Anomalies& before) const;
 
     std::unique_ptr<RigLink> link_;  ///< empty after a move
     Assembler assembler_;
     std::optional<Geometry> geometry_;
-    std::uint64_t lastStep_ = 0;
-    std::uint16_t lastAttempt_ = 0;
+    std::optional<OnItsWay> ahead_;
+    CaptureIds ids_;
 };
 
 }  // namespace gonio::driver

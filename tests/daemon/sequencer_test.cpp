@@ -30,6 +30,7 @@ protected:
         ASSERT_TRUE(model) << model.error().message;
         door.device().place({.role = sim::Role::Sample, .surface = std::move(*model), .wedge = {}});
     }
+    double secondsOnRig() const { return Seconds(door.clock().now()).count(); }
     std::vector<Frame> bracket(const BracketPlan& plan) {
         Sequencer sequencer(*rig, profile, nextPlanStep);
         auto frames = sequencer.bracket({.led = 1, .band = Band::G}, plan);
@@ -76,16 +77,14 @@ TEST_F(SequencerOnSim, SharpLobeIsDimmedUntilNothingSaturates) {
     EXPECT_FALSE(hasUnsaturated(bracket({.dim = false})));
 }
 
+Microseconds longestOf(const std::vector<Frame>& frames) {
+    Microseconds longest{0};
+    for (const Frame& frame : frames) longest = std::max(longest, frame.exposure.requested);
+    return longest;
+}
+
 TEST_F(SequencerOnSim, BracketReachesAsFarAsItWasTold) {
     place("lambert,albedo=0.001");
-    const auto longestOf = [](const std::vector<Frame>& frames) {
-        return std::max_element(frames.begin(),
-                                frames.end(),
-                                [](const auto& a, const auto& b) {
-                                    return a.exposure.requested < b.exposure.requested;
-                                })
-            ->exposure.requested;
-    };
     EXPECT_EQ(longestOf(bracket({})), profile.exposures.back());
     EXPECT_EQ(longestOf(bracket({.longest = 2})), profile.exposures[2]);
     EXPECT_EQ(longestOf(bracket({.longest = 99})), profile.exposures.back());
@@ -93,8 +92,69 @@ TEST_F(SequencerOnSim, BracketReachesAsFarAsItWasTold) {
 
 TEST_F(SequencerOnSim, StopsWhereEverythingIsSaturated) {
     place("lambert,albedo=0.9");
-    const auto frames = bracket({});
-    EXPECT_LT(frames.back().exposure.requested, profile.exposures.back());
+    EXPECT_LT(longestOf(bracket({})), profile.exposures.back());
+}
+
+TEST_F(SequencerOnSim, ABracketTakesAFramePeriodPerCapture) {
+    place("lambert,albedo=0.001");
+    Sequencer sequencer(*rig, profile, nextPlanStep);
+    const double begin = secondsOnRig();
+    constexpr int kStates = 3;
+    for (int led = 0; led < kStates; ++led) {
+        const auto then = led + 1 < kStates ? std::optional(State{.led = led + 1, .band = Band::G})
+                                            : std::nullopt;
+        const auto frames = sequencer.bracket({.led = led, .band = Band::G}, {}, then);
+        ASSERT_TRUE(frames) << frames.error().message;
+        ASSERT_EQ(frames->size(), 5U);
+        for (const Frame& frame : *frames) EXPECT_EQ(frame.led, led);
+    }
+    // Four periods of 40 ms and one of 41 ms a state, settling once of 5 ms; 10 ms of transfer (a
+    // quarter of the sensor) remain at the end.
+    EXPECT_NEAR(secondsOnRig() - begin, kStates * 0.201 + 0.005 + 0.010, 0.010);
+    EXPECT_EQ(rig->anomalies(), driver::Anomalies{});
+}
+
+TEST_F(SequencerOnSim, ArmingTheNextStateAheadChangesNoFrame) {
+    place("ggx,alpha=0.05,f0=0.9/0.7/0.4");
+    sim::InProcessDoor twinDoor{{}};
+    twinDoor.device().place(
+        {.role = sim::Role::Sample,
+         .surface = std::move(*proc::makeModel("ggx,alpha=0.05,f0=0.9/0.7/0.4")),
+         .wedge = {}});
+    auto twinRig = driver::Rig::open(twinDoor, 7);
+    ASSERT_TRUE(twinRig && twinRig->configure({.x = 384, .y = 256, .size = {512, 512}}));
+    std::uint64_t twinStep = 1;
+    Sequencer ahead(*rig, profile, nextPlanStep);
+    Sequencer alone(*twinRig, profile, twinStep);
+    const auto states = ahead.states();
+    for (std::size_t i = 0; i < 6; ++i) {
+        const auto seen = ahead.bracket(states[i], {}, states[i + 1]);
+        const auto wanted = alone.bracket(states[i], {});
+        ASSERT_TRUE(seen && wanted);
+        ASSERT_EQ(seen->size(), wanted->size());
+        for (std::size_t k = 0; k < seen->size(); ++k) {
+            EXPECT_EQ((*seen)[k].captureId >> 16, (*wanted)[k].captureId >> 16);
+            EXPECT_EQ((*seen)[k].pixels, (*wanted)[k].pixels);
+        }
+    }
+}
+
+TEST_F(SequencerOnSim, AnotherStateThanTheOneArmedAheadIsThatState) {
+    place("lambert,albedo=0.2");
+    Sequencer sequencer(*rig, profile, nextPlanStep);
+    ASSERT_TRUE(sequencer.bracket({.led = 0, .band = Band::R}, {}, State{1, Band::R}));
+    const auto frames = sequencer.bracket({.led = 2, .band = Band::B}, {});
+    ASSERT_TRUE(frames) << frames.error().message;
+    std::set<std::uint64_t> captures;
+    for (const Frame& frame : *frames) {
+        EXPECT_EQ(frame.led, 2);
+        EXPECT_EQ(frame.levels[Band::R], 0);
+        captures.insert(frame.captureId);
+    }
+    EXPECT_EQ(captures.size(), frames->size());
+    const auto single = sequencer.expose({.led = 3, .band = Band::G}, 0.5, profile.exposures[0], 2);
+    ASSERT_TRUE(single) << single.error().message;
+    EXPECT_EQ(single->front().led, 3);
 }
 
 TEST_F(SequencerOnSim, NoTwoCapturesShareAPlanStep) {

@@ -80,7 +80,6 @@ gboolean HidrawNode::onWrite(UMockdevIoctlBase*, UMockdevIoctlClient* client, Hi
         const auto reply =
             self->live_.with([&](sim::UsbDevice& usb) { return usb.interruptOut(report); });
         if (reply.answer != sim::UsbAnswer::Done) error = EPIPE;
-        self->live_.flushReports();
     }
     umockdev_ioctl_client_complete(client, error == 0 ? arg->data_len : -1, error);
     return TRUE;

@@ -8,6 +8,7 @@
 #include <functional>
 #include <mutex>
 #include <thread>
+#include <type_traits>
 #include <utility>
 
 #include "proc/core/frame.h"
@@ -34,17 +35,23 @@ public:
     LiveRig(const LiveRig&) = delete;
     LiveRig& operator=(const LiveRig&) = delete;
 
-    /// What `use` answers, with the rig at the present time.
+    /// What `use` answers, with the rig at the present time. Reports that it caused are handed on
+    /// at once: an ACK does not wait for the picture that its command began.
     template <class Use>
     auto with(Use use) {
         const std::scoped_lock lock(mutex_);
         advance();
-        return use(usb_);
+        if constexpr (std::is_void_v<std::invoke_result_t<Use&, sim::UsbDevice&>>) {
+            use(usb_);
+            handOn();
+        } else {
+            auto answer = use(usb_);
+            handOn();
+            return answer;
+        }
     }
     /// Takes the reports from now on; empty: nobody listens, and they are lost.
     void listen(Sink sink);
-    /// Reports that have come are handed on at once.
-    void flushReports();
     /// takes a lit frame of each LED in this window, so that later frames come as fast
     /// as a rig's: what the simulator works out once is then known.
     void warmUp(const Window& window);
@@ -52,6 +59,7 @@ public:
     Faults faults;
 
 private:
+    void flushReports();
     void advance();
     void handOn();
 

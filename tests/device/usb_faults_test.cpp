@@ -102,6 +102,24 @@ TEST_F(UsbFaults, AnErrorOfTheBusIsSurvivedWhileTheRigAnswers) {
     repaired(litFrames(1, 3));
 }
 
+TEST_F(UsbFaults, WithTheNextCaptureArmedFaultsChangeNoFrame) {
+    for (std::uint64_t step = 1; step <= 12; ++step) {
+        if (step % 4 == 1) mock.faults().shorten = 1;
+        if (step % 4 == 2) mock.faults().overflow = 1;
+        if (step == 7) mock.live().with([](sim::UsbDevice& usb) { usb.haltStream(); });
+        const auto capture = rig->capture(litFrames(step, 2), {litFrames(step + 1, 2)});
+        ASSERT_TRUE(capture) << capture.error().message;
+        const auto wanted = undisturbed(litFrames(step, 2));
+        ASSERT_EQ(capture->size(), wanted.size());
+        for (std::size_t i = 0; i < capture->size(); ++i) {
+            EXPECT_EQ((*capture)[i].captureId >> 16, step);
+            EXPECT_EQ((*capture)[i].pixels, wanted[i].pixels) << "step " << step;
+        }
+    }
+    EXPECT_GE(rig->anomalies().badLengths, 3U);
+    EXPECT_GE(rig->anomalies().lostChunks, 3U);
+}
+
 TEST_F(UsbFaults, AResetStreamGoesOnWithWholeFrames) {
     repaired(litFrames(1, 2));
     ASSERT_TRUE(transport->resetStream());

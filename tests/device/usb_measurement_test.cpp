@@ -69,10 +69,13 @@ TEST_F(UsbRigTest, AMeasurementOfTwelveStatesIsThatOfTheInProcessDoor) {
     const daemon::BracketPlan plan = daemon::sampleBracket(Effort::Draft);
     const auto states = real.sequencer.states();
     ASSERT_EQ(states.size(), 12U);
-    for (const daemon::State state : states) {
-        const auto seen = cost.of([&] { return real.sequencer.bracket(state, plan); });
+    for (std::size_t state = 0; state < states.size(); ++state) {
+        const auto then =
+            state + 1 < states.size() ? std::optional(states[state + 1]) : std::nullopt;
+        const auto seen =
+            cost.of([&] { return real.sequencer.bracket(states[state], plan, then); });
         ASSERT_TRUE(seen) << seen.error().message;
-        const auto wanted = twin.sequencer.bracket(state, plan);
+        const auto wanted = twin.sequencer.bracket(states[state], plan, then);
         ASSERT_TRUE(wanted) << wanted.error().message;
         ASSERT_TRUE(real.rig.keepAlive());
         ASSERT_EQ(seen->size(), wanted->size());

@@ -16,6 +16,7 @@ using test::Bytes;
 
 constexpr Size kSize{8, 6};
 constexpr int kFrames = 3;
+constexpr std::uint64_t kNext = 0x60001;
 
 int cases() { return std::getenv("GONIO_NIGHTLY") != nullptr ? 1'000'000 : 20'000; }
 
@@ -50,14 +51,20 @@ TEST(AssemblerFuzz, NeverMakesAFrameThatWasNotSent) {
         for (Bytes& chunk : test::toChunks({.index = i, .pixels = test::picture(kSize, i)}, 1))
             sound.push_back(std::move(chunk));
     }
+    for (Bytes& chunk : test::toChunks({.captureId = kNext, .pixels = test::picture(kSize, 0)}, 22))
+        sound.push_back(std::move(chunk));
+    const auto expected = [](std::uint64_t capture, int frames) {
+        return ExpectedCapture{.bootId = test::kBoot,
+                               .captureId = capture,
+                               .frames = frames,
+                               .frameBytes = 72,
+                               .maxChunkPayload = test::kPayload};
+    };
     int finished = 0;
     for (int i = 0; i < cases(); ++i) {
         Assembler assembler;
-        ASSERT_TRUE(assembler.expect({.bootId = test::kBoot,
-                                      .captureId = 0x50001,
-                                      .frames = kFrames,
-                                      .frameBytes = 72,
-                                      .maxChunkPayload = test::kPayload}));
+        ASSERT_TRUE(assembler.expect(expected(0x50001, kFrames)));
+        ASSERT_TRUE(assembler.expectNext(expected(kNext, 1)));
         std::vector<Bytes> chunks = sound;
         for (std::uint64_t k = random() % 6; k > 0; --k) mutate(chunks, random);
         for (const Bytes& chunk : chunks) {
@@ -67,10 +74,14 @@ TEST(AssemblerFuzz, NeverMakesAFrameThatWasNotSent) {
                 if (random() % 2 == 0) assembler.askedFor(lost);
             }
         }
-        while (const auto frame = assembler.take()) {
-            ++finished;
-            const auto sent = test::picture(kSize, frame->index);
-            ASSERT_EQ(frame->bytes, packPixels(sent, PixelFormat::Mono12Packed)) << "case " << i;
+        for (const std::uint64_t capture : {std::uint64_t{0x50001}, kNext}) {
+            while (const auto frame = assembler.take()) {
+                ++finished;
+                const auto sent = test::picture(kSize, frame->index);
+                ASSERT_EQ(frame->captureId, capture);
+                ASSERT_EQ(frame->bytes, packPixels(sent, PixelFormat::Mono12Packed)) << i;
+            }
+            assembler.moveOn();
         }
     }
     EXPECT_GT(finished, cases()) << "mutations must leave something to assemble";

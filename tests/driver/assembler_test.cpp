@@ -324,6 +324,73 @@ TEST(Assembler, GivesUpTheOldestFrameRatherThanMemory) {
     EXPECT_EQ(assembler.anomalies().givenUp, 1U);
 }
 
+constexpr std::uint64_t kNext = 0x60001;
+
+/// Two frames of kCapture, and one of kNext after them.
+Assembler expectingBoth() {
+    Assembler assembler = expecting(2);
+    EXPECT_TRUE(assembler.expectNext({.bootId = test::kBoot,
+                                      .captureId = kNext,
+                                      .frames = 1,
+                                      .frameBytes = kFrameBytes,
+                                      .maxChunkPayload = test::kPayload}));
+    return assembler;
+}
+
+TEST(Assembler, FramesOfTheNextCaptureWaitForTheirTurn) {
+    Assembler assembler = expectingBoth();
+    const auto next = frame(0, 1, kNext);
+    for (const Bytes& chunk : next) EXPECT_FALSE(assembler.feed(chunk)) << "not of the present one";
+    EXPECT_FALSE(assembler.take());
+    feedAll(assembler, frame(0, 8));
+    EXPECT_EQ(assembler.take()->captureId, kCapture);
+    EXPECT_FALSE(assembler.take());
+    assembler.moveOn();
+    EXPECT_EQ(assembler.take()->captureId, kNext);
+    feedAll(assembler, frame(1, 15));
+    EXPECT_FALSE(assembler.take()) << "its turn is over";
+    EXPECT_EQ(assembler.anomalies(), (Anomalies{.stale = 7}));
+}
+
+TEST(Assembler, TheNextCaptureShowsWhatThePresentOneLacks) {
+    Assembler assembler = expectingBoth();
+    auto present = frame(0, 1);
+    present.pop_back();
+    feedAll(assembler, present);
+    EXPECT_TRUE(assembler.lost().empty());
+    assembler.feed(resent(frame(0, 1, kNext)[0], 15));
+    EXPECT_TRUE(assembler.lost().empty()) << "sent again out of its turn";
+    assembler.feed(frame(0, 16, kNext)[0]);
+    const std::vector<MissingChunks> lost = assembler.lost();
+    ASSERT_EQ(lost.size(), 2U);
+    EXPECT_EQ(lost[0], (MissingChunks{.frame = 0, .first = kTrailer, .last = kTrailer}));
+    EXPECT_EQ(lost[1], (MissingChunks{.frame = 1, .first = 0, .last = kTrailer}));
+    for (const MissingChunks& chunks : lost) assembler.askedFor(chunks);
+    EXPECT_TRUE(assembler.lost().empty());
+    feedAll(assembler, {resent(frame(0, 1).back(), 17)});
+    EXPECT_EQ(assembler.take()->index, 0);
+}
+
+TEST(Assembler, AFrameHasBegunWithAnyOfItsChunks) {
+    Assembler assembler = expecting(2);
+    EXPECT_FALSE(assembler.begun(0));
+    assembler.feed(frame(0, 1)[3]);
+    EXPECT_TRUE(assembler.begun(0));
+    feedAll(assembler, frame(1, 8));
+    EXPECT_TRUE(assembler.begun(1));
+    EXPECT_FALSE(assembler.begun(2));
+}
+
+TEST(Assembler, AForgottenNextCaptureIsStale) {
+    Assembler assembler = expectingBoth();
+    feedAll(assembler, frame(0, 1, kNext));
+    assembler.forgetNext();
+    feedAll(assembler, frame(0, 8, kNext));
+    assembler.moveOn();
+    EXPECT_FALSE(assembler.take());
+    EXPECT_EQ(assembler.anomalies(), (Anomalies{.stale = 7}));
+}
+
 TEST(Anomalies, ReadAsAList) {
     EXPECT_EQ(Anomalies{}.text(), "none");
     const Anomalies some{.badPayloads = 2, .lostChunks = 1};

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <memory>
+#include <random>
 
 #include "driver/rig.h"
 #include "proc/models/spec.h"
@@ -172,6 +173,124 @@ TEST(RigOnSim, LooksAtASurfaceOncePerLedAndWindow) {
     EXPECT_EQ(asked(1, Band::B), 0);
     ASSERT_TRUE(rig->configure({.x = 640, .y = 512, .size = {16, 8}, .binning = 1}));
     EXPECT_EQ(asked(0, Band::B), 16 * 8);
+}
+
+driver::CaptureRequest lit(std::uint64_t planStep, Microseconds exposure, int frames = 1) {
+    return {.planStep = planStep,
+            .led = static_cast<int>(planStep % 4),
+            .levels = LedLevels::only(kBands[planStep % 3], 65535),
+            .exposure = exposure,
+            .frames = frames};
+}
+
+/// Seconds on the rig for `captures` of one frame at one LED level, each of `exposure`.
+double secondsFor(int captures, Microseconds exposure, bool overlapping) {
+    sim::InProcessDoor door({});
+    door.device().place(lambert());
+    auto rig = driver::Rig::open(door, kSession);
+    EXPECT_TRUE(rig && rig->configure(kWindow));
+    driver::CaptureRequest request = lit(1, exposure);
+    const Stopwatch onRig(door.clock());
+    for (int i = 0; i < captures; ++i) {
+        driver::CaptureRequest next = request;
+        ++next.planStep;
+        const bool more = overlapping && i + 1 < captures;
+        EXPECT_TRUE(rig->capture(request, {more ? std::optional(next) : std::nullopt}));
+        request = next;
+    }
+    return onRig.elapsed().count();
+}
+
+TEST(RigOnSim, ExposesTheNextCaptureWhileTheLastIsSent) {
+    constexpr int kCaptures = 8;
+    constexpr double kPeriod = 0.040, kTransfer = 0.039, kExposure = 0.030, kSettling = 0.005;
+    constexpr Microseconds exposure(30000);
+    // Three commands of 0.2 ms for each capture.
+    EXPECT_NEAR(secondsFor(kCaptures, exposure, false),
+                kSettling + kCaptures * (kExposure + kTransfer + 0.0006),
+                0.005);
+    // The last transfer has nothing to overlap with.
+    EXPECT_NEAR(secondsFor(kCaptures, exposure, true),
+                kSettling + kExposure + (kCaptures - 1) * kPeriod + kTransfer,
+                0.005);
+}
+
+/// The in-process door with one of its chunks lost now and then.
+class LossyDoor : public driver::Transport {
+public:
+    LossyDoor(sim::DeviceConfig config, unsigned seed, double loss)
+        : door(std::move(config)), random_(seed), lost_(loss) {}
+    [[nodiscard]] driver::DeviceStrings strings() const override { return door.strings(); }
+    [[nodiscard]] const Clock& clock() const override { return door.clock(); }
+    Result<void> write(const driver::Report& report) override { return door.write(report); }
+    Result<void> setFeature(const driver::Report& report) override {
+        return door.setFeature(report);
+    }
+    [[nodiscard]] Result<driver::Report> getFeature(std::uint8_t id) override {
+        return door.getFeature(id);
+    }
+    [[nodiscard]] Result<std::optional<driver::Report>> readInput(Nanoseconds wait) override {
+        return door.readInput(wait);
+    }
+    [[nodiscard]] Result<std::optional<std::vector<std::uint8_t>>> readBulk(
+        Nanoseconds wait) override {
+        auto chunk = door.readBulk(wait);
+        if (chunk && *chunk && lost_(random_)) return std::optional<std::vector<std::uint8_t>>{};
+        return chunk;
+    }
+    Result<void> resetStream() override { return door.resetStream(); }
+
+    sim::InProcessDoor door;
+
+private:
+    std::mt19937 random_;
+    std::bernoulli_distribution lost_;
+};
+
+TEST(RigOnSim, LossesWithCapturesArmedAheadChangeNoFrame) {
+    constexpr Window kSmall{.x = 512, .y = 384, .size = {256, 256}, .binning = 1};
+    constexpr int kCaptures = 80;
+    int resends = 0, recaptures = 0;
+    for (const unsigned seed : {1U, 2U, 3U}) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        const sim::DeviceConfig config{.serial = "SIM-0007", .seed = 3, .errors = {}};
+        LossyDoor lossy(config, seed, 0.18);
+        sim::InProcessDoor sound(config);
+        lossy.door.device().place(lambert());
+        sound.device().place(lambert());
+        auto rig = driver::Rig::open(lossy, kSession);
+        auto twin = driver::Rig::open(sound, kSession);
+        ASSERT_TRUE(rig && twin && rig->configure(kSmall) && twin->configure(kSmall));
+        std::mt19937 random(seed);
+        const auto requestFor = [&](std::uint64_t step) {
+            return lit(step,
+                       Microseconds(20 + static_cast<int>(random() % 20000)),
+                       1 + static_cast<int>(random() % 5));
+        };
+        driver::CaptureRequest request = requestFor(1);
+        for (std::uint64_t step = 1; step <= kCaptures; ++step) {
+            const driver::CaptureRequest next = requestFor(step + 1);
+            const auto seen = rig->capture(request, {next});
+            ASSERT_TRUE(seen) << seen.error().message;
+            const auto wanted = twin->capture(request);
+            ASSERT_TRUE(wanted);
+            ASSERT_EQ(seen->size(), wanted->size());
+            for (std::size_t i = 0; i < seen->size(); ++i) {
+                ASSERT_EQ((*seen)[i].captureId >> 16, step);
+                ASSERT_EQ((*seen)[i].index, static_cast<int>(i));
+                ASSERT_EQ((*seen)[i].led, request.led);
+                ASSERT_EQ((*seen)[i].pixels, (*wanted)[i].pixels) << "step " << step;
+            }
+            resends += seen->resends;
+            recaptures += seen->recaptures;
+            // Now and then something else comes than what was armed ahead.
+            request = random() % 8 == 0 ? requestFor(step + 1) : next;
+            const bool darkened = random() % 16 != 0 || rig->darken();
+            ASSERT_TRUE(darkened);
+        }
+    }
+    EXPECT_GT(resends, 2 * kCaptures);
+    EXPECT_GT(recaptures, 3);
 }
 
 TEST(RigOnSim, BinnedWindowIsFourTimesSmaller) {

@@ -1,0 +1,23 @@
+#pragma once
+// capture_id = plan step << 16 | attempt. Attempts count from 1, so that no id is 0, and go on when
+// a step comes again: no id is used twice while the rig may still hold frames of it. 65535 attempts
+// at one step wrap.
+
+#include <cstdint>
+#include <deque>
+
+namespace gonio::driver {
+
+class CaptureIds {
+public:
+    [[nodiscard]] std::uint64_t next(std::uint64_t planStep);
+
+private:
+    struct Used {
+        std::uint64_t planStep = 0;
+        std::uint16_t attempt = 0;
+    };
+    std::deque<Used> recent_;  ///< newest last
+};
+
+}  // namespace gonio::driver

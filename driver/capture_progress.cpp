@@ -1,0 +1,76 @@
+#include "driver/capture_progress.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace gonio::driver {
+namespace {
+
+constexpr int kReasonsKept = 8;
+
+}  // namespace
+
+void CaptureProgress::begin() {
+    asked_.assign(frames_.size(), 0);
+    hopeless_.assign(frames_.size(), false);
+    failed_ = false;
+}
+
+bool CaptureProgress::waitsFor(int frame) const {
+    const auto i = static_cast<std::size_t>(frame);
+    return !frames_[i] && !hopeless_[i];
+}
+
+bool CaptureProgress::waits() const {
+    for (int i = 0; i < static_cast<int>(frames_.size()); ++i) {
+        if (waitsFor(i)) return true;
+    }
+    return false;
+}
+
+bool CaptureProgress::soundUpTo(int frame) const {
+    if (std::find(hopeless_.begin(), hopeless_.end(), true) != hopeless_.end()) return false;
+    return std::all_of(frames_.begin(), frames_.begin() + frame, [](const auto& there) {
+        return there.has_value();
+    });
+}
+
+int CaptureProgress::toArm() const {
+    const auto last = std::find(frames_.rbegin(), frames_.rend(), std::nullopt);
+    return static_cast<int>(frames_.rend() - last);
+}
+
+void CaptureProgress::keep(Frame frame) {
+    const auto i = static_cast<std::size_t>(frame.index);
+    frames_[i] = std::move(frame);
+}
+
+void CaptureProgress::discard(int frame) {
+    hopeless_[static_cast<std::size_t>(frame)] = true;
+    ++discarded;
+}
+
+void CaptureProgress::giveUp(int frame, const std::string& why) {
+    hopeless_[static_cast<std::size_t>(frame)] = true;
+    failed_ = true;
+    if (++reasons_ > kReasonsKept) return;
+    if (!evidence_.empty()) evidence_ += "; ";
+    evidence_ += "frame " + std::to_string(frame) + ": " + why;
+}
+
+bool CaptureProgress::mayAskAgain(int frame, int most) {
+    int& asked = asked_[static_cast<std::size_t>(frame)];
+    if (asked == most) return false;
+    ++asked;
+    ++resends;
+    return true;
+}
+
+std::vector<Frame> CaptureProgress::takeFrames() {
+    std::vector<Frame> taken;
+    taken.reserve(frames_.size());
+    for (auto& frame : frames_) taken.push_back(std::move(*frame));
+    return taken;
+}
+
+}  // namespace gonio::driver

@@ -1,0 +1,52 @@
+#pragma once
+// How far a capture has come, over all its attempts: the frames that are there, what has been asked
+// for again, what is hopeless in this attempt, and why. A frame that is there stays.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "proc/core/frame.h"
+
+namespace gonio::driver {
+
+class CaptureProgress {
+public:
+    explicit CaptureProgress(int frames) : frames_(static_cast<std::size_t>(frames)) {}
+
+    /// A new attempt: what was hopeless may be hoped for again.
+    void begin();
+    /// Wanted, and still to be hoped for in this attempt.
+    [[nodiscard]] bool waitsFor(int frame) const;
+    [[nodiscard]] bool waits() const;
+    /// Nothing is wrong with this attempt, and no frame before `frame` is waited for.
+    [[nodiscard]] bool soundUpTo(int frame) const;
+    /// This attempt lost or refused a frame.
+    [[nodiscard]] bool failed() const { return failed_; }
+    /// Frames up to the last one that is missing: those must be armed again; 0 when all are there.
+    [[nodiscard]] int toArm() const;
+
+    void keep(Frame frame);
+    /// From before the settings took effect: to be taken again, though nobody failed.
+    void discard(int frame);
+    void giveUp(int frame, const std::string& why);
+    /// Counts a RESEND for `frame`; false when it has had `most` in this attempt.
+    [[nodiscard]] bool mayAskAgain(int frame, int most);
+
+    /// The first reasons of those that were given, as a list.
+    [[nodiscard]] const std::string& evidence() const { return evidence_; }
+    /// Precondition: toArm() == 0.
+    [[nodiscard]] std::vector<Frame> takeFrames();
+
+    int discarded = 0, resends = 0, recaptures = 0;
+
+private:
+    std::vector<std::optional<Frame>> frames_;
+    std::vector<int> asked_;      ///< RESENDs of this attempt, by frame
+    std::vector<bool> hopeless_;  ///< of this attempt, by frame
+    bool failed_ = false;
+    int reasons_ = 0;
+    std::string evidence_;
+};
+
+}  // namespace gonio::driver

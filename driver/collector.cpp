@@ -1,0 +1,118 @@
+#include "driver/collector.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <variant>
+
+namespace gonio::driver {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr int kResends = 2;                    // per frame; PROTOCOL.md 3, "Repair"
+constexpr std::uint32_t kCanResend = 1U << 2;  // capability bit
+
+}  // namespace
+
+Result<void> Collector::collect(const ArmedCapture& armed,
+                                CaptureProgress& progress,
+                                const std::function<Result<void>()>& exposed) {
+    const Nanoseconds wait = patience(armed.plan.exposure);
+    const int last = armed.expected.frames - 1;
+    bool told = false;
+    deadline_ = link_.clock().now() + wait;
+    while (true) {
+        takeFinished(armed.plan, progress);
+        if (auto sound = notAborted(); !sound) return sound;
+        if (!told && assembler_.begun(last) && progress.soundUpTo(last)) {
+            told = true;
+            if (auto done = exposed(); !done) return done;
+            deadline_ = link_.clock().now() + wait;  // the chunks have come meanwhile, unread
+        }
+        if (auto asked = repair(armed, progress); !asked) return asked;
+        if (!progress.waits()) return {};
+        const Nanoseconds left = std::max(Nanoseconds{0}, deadline_ - link_.clock().now());
+        const auto transfer = link_.readBulk(left);
+        if (!transfer) return transfer.error();
+        if (*transfer && assembler_.feed(**transfer)) deadline_ = link_.clock().now() + wait;
+    }
+}
+
+void Collector::takeFinished(const FramePlan& plan, CaptureProgress& progress) {
+    while (const auto wire = assembler_.take()) {
+        if (!progress.waitsFor(wire->index)) continue;
+        auto verdict = judge(*wire, plan);
+        if (auto* frame = std::get_if<Frame>(&verdict)) {
+            progress.keep(std::move(*frame));
+        } else if (const auto* rejected = std::get_if<Rejected>(&verdict)) {
+            progress.giveUp(wire->index, rejected->why);
+        } else {
+            progress.discard(wire->index);
+        }
+    }
+}
+
+Result<void> Collector::notAborted() const {
+    const auto& aborted = assembler_.aborted();
+    if (!aborted) return {};
+    return Error{ErrorKind::Device,
+                 "the rig aborted frame number " + std::to_string(aborted->frameNumber) + ": " +
+                     statusName(aborted->reason),
+                 aborted->reason};
+}
+
+Result<void> Collector::repair(const ArmedCapture& armed, CaptureProgress& progress) {
+    const bool late = link_.clock().now() >= deadline_;
+    if (late) deadline_ = link_.clock().now() + patience(armed.plan.exposure);
+    for (const MissingChunks& chunks : late ? overdue(armed.expected.frames) : assembler_.lost()) {
+        if (!progress.waitsFor(chunks.frame)) continue;
+        if (auto asked = askAgain(chunks, armed.expected.captureId, progress); !asked) return asked;
+    }
+    return {};
+}
+
+std::vector<MissingChunks> Collector::overdue(int frames) const {
+    std::vector<MissingChunks> all;
+    for (int i = 0; i < frames; ++i) {
+        if (const auto chunks = assembler_.missing(i)) all.push_back(*chunks);
+    }
+    return all;
+}
+
+Result<void> Collector::askAgain(const MissingChunks& chunks,
+                                 std::uint64_t captureId,
+                                 CaptureProgress& progress) {
+    const std::string range =
+        "chunks " + std::to_string(chunks.first) + ".." + std::to_string(chunks.last) + " missing";
+    if ((link_.ident().capabilities & kCanResend) == 0) {
+        progress.giveUp(chunks.frame, range + ", the rig cannot resend");
+        return {};
+    }
+    if (!progress.mayAskAgain(chunks.frame, kResends)) {
+        progress.giveUp(chunks.frame, range + " after " + std::to_string(kResends) + " RESENDs");
+        return {};
+    }
+    const auto sent = link_.command(Op::Resend,
+                                    encode(Resend{.captureId = captureId,
+                                                  .frame = static_cast<std::uint16_t>(chunks.frame),
+                                                  .firstChunk = chunks.first,
+                                                  .lastChunk = chunks.last}));
+    if (sent) {
+        assembler_.askedFor(chunks);
+        return {};
+    }
+    const int code = sent.error().deviceStatus;
+    if (code != status::kFrameGone && code != status::kBadRange) return sent.error();
+    progress.giveUp(chunks.frame, range + ", " + statusName(static_cast<std::uint16_t>(code)));
+    return {};
+}
+
+/// PROTOCOL.md 2: a frame is overdue after settling, exposure, two frame periods and 500 ms. Every
+/// new chunk starts the wait anew; there are finitely many of them.
+Nanoseconds Collector::patience(const Exposure& exposure) const {
+    return exposure.granted + 2 * Nanoseconds(Microseconds(link_.limits().framePeriodUs)) +
+           Nanoseconds(std::chrono::milliseconds(link_.ident().ledSettleMs)) + 500ms;
+}
+
+}  // namespace gonio::driver

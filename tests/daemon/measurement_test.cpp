@@ -1,0 +1,130 @@
+// Whole placements on the simulated rig, in virtual time.
+
+#include "daemon/measurement.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+
+#include "driver/steady_clock.h"
+#include "proc/models/spec.h"
+#include "proc/radiance/merge.h"
+#include "sim/in_process.h"
+#include "tests/optics/lenses.h"
+
+namespace gonio::daemon {
+namespace {
+
+constexpr int kDarkFrames = 2;
+const BracketPlan kPlan{.longest = 2};
+
+class MeasurementOnSim : public testing::Test {
+protected:
+    void SetUp() override {
+        auto known = readProfile(defaultProfile());
+        ASSERT_TRUE(known) << known.error().message;
+        profile = std::move(*known);
+        door.device().place({.role = sim::Role::Sample,
+                             .surface = std::move(*proc::makeModel("ggx,alpha=0.2,f0=0.5")),
+                             .wedge = {}});
+        auto opened = driver::Rig::open(door, 7);
+        ASSERT_TRUE(opened) << opened.error().message;
+        rig.emplace(std::move(*opened));
+    }
+    Result<Captured> measured(std::function<Result<void>(const std::string&)> step) {
+        return measurePlacement({.rig = *rig,
+                                 .profile = profile,
+                                 .nextPlanStep = nextPlanStep,
+                                 .clock = computer,
+                                 .step = std::move(step)},
+                                test::crookedLens(),
+                                kPlan,
+                                kDarkFrames);
+    }
+    [[nodiscard]] bool dark() {
+        const auto status = driver::decodeStatus(*door.device().getFeature(0x10));
+        return status && status->ledOn == 0 && status->state == driver::RigState::Idle;
+    }
+
+    RigProfile profile;
+    driver::SteadyClock computer;
+    sim::InProcessDoor door{{}};
+    std::optional<driver::Rig> rig;
+    std::uint64_t nextPlanStep = 1;
+};
+
+void expectSameBits(const std::vector<double>& a, const std::vector<double>& b) {
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i)
+        ASSERT_EQ(std::bit_cast<std::uint64_t>(a[i]), std::bit_cast<std::uint64_t>(b[i])) << i;
+}
+
+TEST_F(MeasurementOnSim, MergingBesideTheCapturesChangesNoBit) {
+    std::vector<std::string> steps;
+    const auto seen = measured([&](const std::string& what) -> Result<void> {
+        steps.push_back(what);
+        return {};
+    });
+    ASSERT_TRUE(seen) << seen.error().message;
+    EXPECT_TRUE(dark());
+    EXPECT_EQ(steps.size(), profile.exposures.size() + 12);
+    EXPECT_EQ(steps.back(), "LED 3 b");
+    EXPECT_GT(seen->compute.count(), 0);
+    ASSERT_EQ(seen->raw.states.size(), 12U);
+
+    // One after the other, on a rig like it.
+    sim::InProcessDoor twinDoor{{}};
+    twinDoor.device().place({.role = sim::Role::Sample,
+                             .surface = std::move(*proc::makeModel("ggx,alpha=0.2,f0=0.5")),
+                             .wedge = {}});
+    auto twin = driver::Rig::open(twinDoor, 7);
+    ASSERT_TRUE(twin);
+    const auto window = configureWindow(*twin);
+    ASSERT_TRUE(window);
+    std::uint64_t step = 1;
+    Sequencer sequencer(*twin, profile, step);
+    auto dark = sequencer.darks(kDarkFrames, [] { return Result<void>(); });
+    ASSERT_TRUE(dark);
+    proc::DarkLibrary darks;
+    for (proc::DarkFrame& frame : *dark) darks.add(std::move(frame));
+    const proc::Binning binning(test::crookedLens(), *window, kField);
+    std::size_t at = 0;
+    for (const State state : sequencer.states()) {
+        const auto frames = sequencer.bracket(state, kPlan);
+        ASSERT_TRUE(frames);
+        const auto merged = proc::merge(*frames, state.band, darks, profile.noise);
+        ASSERT_TRUE(merged);
+        const proc::CellSignal wanted = binning.bin(*merged);
+        const proc::CellSignal& signal =
+            seen->signals[static_cast<std::size_t>(state.led)][index(state.band)];
+        expectSameBits(signal.signal, wanted.signal);
+        expectSameBits(signal.variance, wanted.variance);
+        const proc::RawState& raw = seen->raw.states[at++];
+        EXPECT_EQ(raw.merged.led, state.led);
+        EXPECT_EQ(raw.merged.band, state.band);
+        EXPECT_EQ(raw.merged.chiSquare, merged->chiSquare);
+        EXPECT_EQ(raw.bracket.size(), frames->size());
+    }
+}
+
+TEST_F(MeasurementOnSim, CancellingAtAnyKindOfStepLeavesTheRigDarkAndUsable) {
+    // A dark exposure, the first state (the next is armed ahead by then), one with another merging.
+    for (const int last : {1, 7, 8}) {
+        SCOPED_TRACE("step " + std::to_string(last));
+        int steps = 0;
+        const auto cancelled = measured([&](const std::string&) -> Result<void> {
+            if (++steps < last) return {};
+            return Error{ErrorKind::Interrupted, "cancelled"};
+        });
+        ASSERT_FALSE(cancelled);
+        EXPECT_EQ(cancelled.error().kind, ErrorKind::Interrupted);
+        EXPECT_EQ(steps, last);
+        EXPECT_TRUE(dark());
+    }
+    const auto capture = rig->capture({.planStep = nextPlanStep++, .exposure = Microseconds(100)});
+    EXPECT_TRUE(capture) << capture.error().message;
+    EXPECT_EQ(rig->anomalies(), driver::Anomalies{});
+}
+
+}  // namespace
+}  // namespace gonio::daemon
