@@ -168,8 +168,8 @@ void Device::beginExposureIfDue() {
     exposing.start = std::max({now_, earliestStart_, settledAt_});
     exposing.end = exposing.start + grantedExposure(current_.exposureUs);
     exposing_ = exposing;
-    earliestStart_ =
-        exposing.start + std::max(kFramePeriod, grantedExposure(current_.exposureUs) + kReadout);
+    earliestStart_ = exposing.start +
+                     std::max(link().framePeriod, grantedExposure(current_.exposureUs) + kReadout);
     capture_->triggersWaiting = 0;
 }
 

@@ -13,6 +13,7 @@
 #include "driver/protocol/reports.h"
 #include "proc/core/units.h"
 #include "sim/camera.h"
+#include "sim/camera_kind.h"
 #include "sim/claim.h"
 #include "sim/exposing.h"
 #include "sim/frame_queue.h"
@@ -28,6 +29,7 @@ struct DeviceConfig {
     std::uint32_t bootCount = 1;
     ReferenceErrors errors;
     double sensorCelsius = 25;  ///< dark current doubles each 7 K
+    CameraKind camera = CameraKind::Usb2;
 };
 
 class Device {
@@ -36,6 +38,7 @@ public:
 
     // What a door needs. Times are since boot.
     [[nodiscard]] const std::string& serial() const { return config_.serial; }
+    [[nodiscard]] CameraLink link() const { return cameraLink(config_.camera); }
     /// Empty: the request stalls.
     [[nodiscard]] std::optional<driver::Report> getFeature(std::uint8_t id);
     /// False: the request stalls.

@@ -66,7 +66,7 @@ Limits Device::limits() const {
     v.binnings = 0b111;
     v.roiStep = kRoiStep;
     v.maxFrames = kMaxFrames;
-    v.framePeriodUs = static_cast<std::uint32_t>(microseconds(kFramePeriod));
+    v.framePeriodUs = static_cast<std::uint32_t>(microseconds(link().framePeriod));
     v.blackLevel = kBlackLevel;
     v.fullScale = kFullScale;
     v.ledFull = kFullCurrent;

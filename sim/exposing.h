@@ -15,8 +15,6 @@ namespace gonio::sim {
 inline constexpr std::uint16_t kMaxFrames = 256;  ///< per ARM
 inline constexpr std::uint8_t kControlLatency = 2;
 inline constexpr std::uint8_t kRoiStep = 4;
-inline constexpr Nanoseconds kFramePeriod =
-    std::chrono::milliseconds(40);  ///< full frame over USB 2
 
 struct Settings {
     int led = -1;  ///< -1: dark

@@ -59,7 +59,8 @@ public:
         if (Result<void> kept = writeSimState(*store, reserved); !kept) return kept.error();
         Result<RigProfile> known = readProfile(profile.empty() ? defaultProfile() : profile);
         if (!known) return known.error();
-        Result<std::unique_ptr<sim::InProcessDoor>> door = openSim(*state, *store);
+        Result<std::unique_ptr<sim::InProcessDoor>> door =
+            openSim(*state, *store, known->cameraUsb);
         if (!door) return door.error();
         auto rig = driver::Rig::open(**door, state->nextPlanStep);
         if (!rig) return rig.error();
