@@ -20,6 +20,7 @@ namespace fs = std::filesystem;
 
 constexpr double kLongestUs = 3.6e9;  // an hour
 constexpr std::string_view kIdealWhite = "1/pi";
+constexpr std::string_view kSchema = "gonio/rig/1";
 
 /// Reads keys of one file; remembers the first that is missing or out of its domain.
 class Keys {
@@ -35,6 +36,22 @@ public:
         const auto value = table_.at_path(key).value<std::string>();
         if (!value || value->empty()) complain(key, "a text");
         return value.value_or("");
+    }
+    /// One of the two.
+    int either(std::string_view key, int first, int second) {
+        const auto value = table_.at_path(key).value<std::int64_t>();
+        if (value == first || value == second) return static_cast<int>(*value);
+        complain(key, std::to_string(first) + " or " + std::to_string(second));
+        return first;
+    }
+    /// What kind of file it is, and of which version.
+    void schema(std::string_view wanted) {
+        const auto value = table_["schema"].value<std::string>();
+        if (value == wanted) return;
+        complain("schema",
+                 "\"" + std::string(wanted) + "\", " +
+                     (value ? "saw \"" + *value + "\"" : "it is missing") +
+                     ": not a rig profile that this program knows");
     }
     /// Ascending.
     std::vector<Microseconds> wholeMicroseconds(std::string_view key) {
@@ -120,8 +137,10 @@ Result<RigProfile> readProfile(const fs::path& file) {
     }
     Keys keys(table, file.string());
     RigProfile profile;
+    keys.schema(kSchema);
     profile.hash = hashOf(*text);
     profile.name = keys.text("name");
+    profile.cameraUsb = keys.either("camera.usb", 2, 3);
     profile.noise.electronsPerDn = keys.positive("sensor.electrons_per_dn");
     profile.noise.readNoiseElectrons = keys.positive("sensor.read_noise_electrons");
     profile.noise.darkElectronsPerSecond = keys.positive("sensor.dark_electrons_per_second");

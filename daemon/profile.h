@@ -13,7 +13,8 @@ namespace gonio::daemon {
 
 struct RigProfile {
     std::string name;
-    std::string hash;  ///< of the file's bytes: eight hexadecimal digits
+    std::string hash;   ///< of the file's bytes: eight hexadecimal digits
+    int cameraUsb = 2;  ///< the camera's USB, 2 or 3; a rig tells its own frame period
     proc::SensorNoise noise;
     std::vector<Microseconds> exposures;   ///< ascending
     std::vector<double> dimLevels;         ///< fractions of full level, descending

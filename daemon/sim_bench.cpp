@@ -69,13 +69,19 @@ Result<sim::Placement> makePlacement(const SimState& state, const Store& store) 
     return placement;
 }
 
-Result<std::unique_ptr<sim::InProcessDoor>> openSim(const SimState& state, const Store& store) {
+Result<std::unique_ptr<sim::InProcessDoor>> openSim(const SimState& state,
+                                                    const Store& store,
+                                                    int cameraUsb) {
     const auto errors = sim::ReferenceErrors::parse(state.systematic, state.seed);
     if (!errors) return errors.error();
     Result<sim::Placement> placement = makePlacement(state, store);
     if (!placement) return placement.error();
     auto door = std::make_unique<sim::InProcessDoor>(sim::DeviceConfig{
-        .serial = state.serial, .seed = state.seed, .bootCount = 1, .errors = *errors});
+        .serial = state.serial,
+        .seed = state.seed,
+        .bootCount = 1,
+        .errors = *errors,
+        .camera = cameraUsb == 3 ? sim::CameraKind::Usb3 : sim::CameraKind::Usb2});
     door->device().place(std::move(*placement));
     return door;
 }

@@ -27,8 +27,10 @@ Result<void> writeSimState(const Store& store, const SimState& state);
 /// of the rig profile; their errors are the simulator's.
 [[nodiscard]] Result<sim::Placement> makePlacement(const SimState& state, const Store& store);
 
-/// A rig as the state says, with its placement under it.
+/// A rig as the state says, with its placement under it and a camera of this USB (2 or 3, as the
+/// rig profile says).
 [[nodiscard]] Result<std::unique_ptr<sim::InProcessDoor>> openSim(const SimState& state,
-                                                                  const Store& store);
+                                                                  const Store& store,
+                                                                  int cameraUsb = 2);
 
 }  // namespace gonio::daemon

@@ -6,7 +6,6 @@ namespace gonio::sim {
 namespace {
 
 constexpr Nanoseconds kControlTime = std::chrono::microseconds(200);
-constexpr double kBulkNanosecondsPerByte = 25;  // 40 MB/s
 
 Error stalled(int id) {
     return {ErrorKind::Device, "feature report " + std::to_string(id) + ": the device stalled"};
@@ -56,8 +55,8 @@ Result<std::optional<driver::Report>> InProcessDoor::readInput(Nanoseconds wait)
 Result<std::optional<std::vector<std::uint8_t>>> InProcessDoor::readBulk(Nanoseconds wait) {
     auto chunk = waitFor(device_, wait, [this] { return device_.takeBulk(); });
     if (chunk) {
-        spend(Nanoseconds(static_cast<std::int64_t>(kBulkNanosecondsPerByte *
-                                                    static_cast<double>(chunk->size()))));
+        const double cost = device_.link().nanosecondsPerByte * static_cast<double>(chunk->size());
+        spend(Nanoseconds(static_cast<std::int64_t>(cost)));
     }
     return chunk;
 }

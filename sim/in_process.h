@@ -1,8 +1,8 @@
 #pragma once
 // The in-process door: the driver's transport on a simulated device, in virtual time. Each call
-// costs what it would on USB 2 (a control or interrupt transfer 0.2 ms, bulk 40 MB/s), and waiting
-// lets the virtual clock run to the next thing that happens. Every byte passes the codec on both
-// sides.
+// costs what it would on USB (a control or interrupt transfer 0.2 ms, bulk what the rig's camera
+// kind carries), and waiting lets the virtual clock run to the next thing that happens. Every byte
+// passes the codec on both sides.
 
 #include "driver/protocol/transport.h"
 #include "sim/device.h"

@@ -2,9 +2,14 @@
 // The sensor: 1280 x 1024 mono, 12 bit, full well 10.5 ke-, read noise 2.4 e-, 2.6 e-/DN, black
 // level 60 DN, dark current 3 e-/s at 25 degC doubling each 7 K, photo-response non-uniformity 0.7
 // % drawn from the serial. Noise is a pure function of (seed, plan step, frame index, pixel).
+//
+// Hot pixels, drawn from the serial too: one in 5000 has a dark current of 30 to 3000 e-/s at 25
+// degC, as many in each octave, and doubling each 7 K as the rest.
 
 #include <cstdint>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "proc/core/image.h"
 #include "proc/core/units.h"
@@ -14,6 +19,10 @@ namespace gonio::sim {
 inline constexpr Size kSensorSize{1280, 1024};
 inline constexpr std::uint16_t kBlackLevel = 60;
 inline constexpr std::uint16_t kFullScale = 4095;
+inline constexpr double kHotShare = 2e-4;     ///< of the pixels
+inline constexpr double kHottestAt25 = 3000;  ///< e-/s
+inline constexpr double kLeastHotAt25 = 30;   ///< e-/s
+inline constexpr double kDarkAt25 = 3;        ///< e-/s, of all other pixels
 inline constexpr std::uint32_t kExposureMinUs = 20;
 inline constexpr std::uint32_t kExposureMaxUs = 1'000'000;
 inline constexpr std::uint16_t kExposureStep = 550;  ///< 0.01 us: one line
@@ -49,11 +58,30 @@ public:
 
     /// Gain of a pixel of the sensor relative to the mean: 1 +- 0.7 %.
     [[nodiscard]] double response(std::uint64_t pixel) const;
+    /// Dark current of a pixel of the sensor at 25 degC, e-/s.
+    [[nodiscard]] double darkCurrent(std::uint64_t pixel) const;
 
 private:
+    struct HotPixel {
+        std::uint64_t pixel = 0;
+        double darkCurrent = 0;  // at 25 degC
+    };
+    /// What one exposure has for all its rows.
+    struct Shot {
+        const Image<float>* rate = nullptr;
+        double gain = 0;      // level times seconds
+        double darkTime = 0;  // seconds at 25 degC that give the dark current of the exposure
+        std::uint64_t shotKey = 0, readKey = 0;
+    };
+    void exposeRow(const Shot& shot, const View& view, int row, std::span<std::uint16_t> out) const;
+    /// Mean dark electrons of the pixels from `first` on.
+    void darkElectrons(double darkTime, std::uint64_t first, std::span<double> out) const;
+
     std::uint64_t key_;
+    std::uint64_t hotKey_;
     double celsius_;
-    Image<float> response_;  // of the whole sensor
+    Image<float> response_;      // of the whole sensor
+    std::vector<HotPixel> hot_;  // by pixel
 };
 
 }  // namespace gonio::sim

@@ -2,36 +2,29 @@
 
 #include <algorithm>
 #include <array>
-#include <string>
+#include <utility>
 
 namespace gonio::sim {
 namespace {
 
-// USB 2.0, chapter 9, and HID 1.11.
-constexpr std::uint8_t kDeviceType = 1, kConfigType = 2, kStringType = 3, kQualifierType = 6;
+// USB 2.0 and 3.2, chapter 9, and HID 1.11.
+constexpr std::uint8_t kDeviceType = 1, kConfigType = 2, kStringType = 3, kQualifierType = 6,
+                       kBosType = 0x0F;
 constexpr std::uint8_t kHidType = 0x21, kReportType = 0x22;
 constexpr std::uint8_t kGetStatus = 0, kClearFeature = 1, kSetFeature = 3, kGetDescriptor = 6,
                        kGetConfiguration = 8, kSetConfiguration = 9, kGetInterface = 10,
-                       kSetInterface = 11;
+                       kSetInterface = 11, kSetExitLatencies = 48, kSetIsochronousDelay = 49;
 constexpr std::uint8_t kGetReport = 1, kSetReport = 9, kSetIdle = 10;
 constexpr std::uint8_t kInput = 1, kOutput = 2, kFeature = 3;
-constexpr std::uint8_t kToHost = 0x80, kKind = 0x60, kStandard = 0x00, kClass = 0x20;
+constexpr std::uint8_t kKind = 0x60, kStandard = 0x00, kClass = 0x20;
 constexpr std::uint8_t kRecipient = 0x1F, kToInterface = 1, kToEndpoint = 2;
-constexpr std::uint8_t kProtocolString = 240;
 
 constexpr std::uint8_t low(std::size_t v) { return static_cast<std::uint8_t>(v & 0xFF); }
 constexpr std::uint8_t high(std::size_t v) { return static_cast<std::uint8_t>(v >> 8 & 0xFF); }
 
-/// PROTOCOL.md 1: numbered reports of 63 bytes.
-constexpr std::array<std::uint8_t, 77> kReportDescriptor{
-    0x06, 0x47, 0xFF, 0x09, 0x01, 0xA1, 0x01, 0x15, 0x00, 0x26, 0xFF, 0x00, 0x75, 0x08, 0x95, 0x3F,
-    0x85, 0x01, 0x09, 0x01, 0xB1, 0x02, 0x85, 0x02, 0x09, 0x02, 0xB1, 0x02, 0x85, 0x03, 0x09, 0x03,
-    0xB1, 0x02, 0x85, 0x04, 0x09, 0x04, 0xB1, 0x02, 0x85, 0x05, 0x09, 0x05, 0xB1, 0x02, 0x85, 0x06,
-    0x09, 0x06, 0xB1, 0x02, 0x85, 0x10, 0x09, 0x10, 0x81, 0x02, 0x85, 0x11, 0x09, 0x11, 0x81, 0x02,
-    0x85, 0x21, 0x09, 0x21, 0x81, 0x02, 0x85, 0x20, 0x09, 0x20, 0x91, 0x02, 0xC0};
-
-constexpr std::array<std::uint8_t, 9> kHidDescriptor{
-    9, kHidType, 0x11, 0x01, 0, 1, kReportType, low(kReportDescriptor.size()), 0};
+std::vector<std::uint8_t> copied(std::span<const std::uint8_t> bytes) {
+    return {bytes.begin(), bytes.end()};
+}
 
 UsbReply stall() { return {.answer = UsbAnswer::Stall, .data = {}}; }
 UsbReply done() { return {}; }
@@ -48,83 +41,31 @@ UsbReply answerOrStall(const std::optional<std::vector<std::uint8_t>>& data, std
 
 }  // namespace
 
-UsbDevice::UsbDevice(DeviceConfig config, UsbIds ids) : device_(std::move(config)), ids_(ids) {}
-
-std::span<const std::uint8_t> UsbDevice::reportDescriptor() { return kReportDescriptor; }
+UsbDevice::UsbDevice(DeviceConfig config, UsbIds ids)
+    : kind_(config.camera), device_(std::move(config)), ids_(ids) {}
 
 std::vector<std::uint8_t> UsbDevice::deviceDescriptor() const {
-    return {18,
-            kDeviceType,
-            0x00,
-            0x02,  // USB 2.0
-            0,
-            0,
-            0,   // class: per interface
-            64,  // bytes in a packet of endpoint 0
-            low(ids_.vendor),
-            high(ids_.vendor),
-            low(ids_.product),
-            high(ids_.product),
-            0x00,
-            0x01,  // device release 1.0
-            1,
-            2,
-            3,  // strings: maker, product, serial number
-            1};
+    return usb::deviceDescriptor(ids_, kind_);
 }
 
 std::vector<std::uint8_t> UsbDevice::configDescriptor() const {
-    std::vector<std::uint8_t> all{9, kConfigType, 0, 0, 2, 1, 0, 0x80, 250};  // bus powered, 500 mA
-    const auto add = [&all](std::span<const std::uint8_t> part) {
-        all.insert(all.end(), part.begin(), part.end());
-    };
-    add(std::array<std::uint8_t, 9>{9, 4, kHidInterface, 0, 2, 3, 0, 0, 0});
-    add(kHidDescriptor);
-    add(std::array<std::uint8_t, 7>{7, 5, kInterruptIn, 3, 64, 0, 6});  // every 4 ms
-    add(std::array<std::uint8_t, 7>{7, 5, kInterruptOut, 3, 64, 0, 6});
-    add(std::array<std::uint8_t, 9>{9, 4, kStreamInterface, 0, 1, 0xFF, 0x47, 0x01, 0});
-    add(std::array<std::uint8_t, 7>{7, 5, kBulkIn, 2, low(kBulkPacket), high(kBulkPacket), 0});
-    all[2] = low(all.size());
-    all[3] = high(all.size());
-    return all;
-}
-
-std::optional<std::vector<std::uint8_t>> UsbDevice::string(std::uint8_t index) const {
-    if (index == 0) return std::vector<std::uint8_t>{4, kStringType, 0x09, 0x04};  // English
-    std::string text;
-    switch (index) {
-        case 1: text = "gonio"; break;
-        case 2: text = "simulated rig"; break;
-        case 3: text = device_.serial(); break;
-        case kProtocolString:
-            text = "GRP/" + std::to_string(driver::kProtocolMajor) + "." +
-                   std::to_string(driver::kProtocolMinor);
-            break;
-        default: return std::nullopt;
-    }
-    std::vector<std::uint8_t> bytes{low(2 + 2 * text.size()), kStringType};
-    for (char c : text) {
-        bytes.push_back(static_cast<std::uint8_t>(c));
-        bytes.push_back(0);
-    }
-    return bytes;
+    return usb::configDescriptor(kind_);
 }
 
 std::optional<std::vector<std::uint8_t>> UsbDevice::descriptor(const UsbSetup& setup) const {
     const auto index = low(setup.value);
     if ((setup.requestType & kRecipient) == kToInterface) {
         if (low(setup.index) != kHidInterface) return std::nullopt;
-        if (high(setup.value) == kHidType)
-            return std::vector<std::uint8_t>(kHidDescriptor.begin(), kHidDescriptor.end());
+        if (high(setup.value) == kHidType) return copied(usb::hidDescriptor());
         if (high(setup.value) != kReportType) return std::nullopt;
-        return std::vector<std::uint8_t>(kReportDescriptor.begin(), kReportDescriptor.end());
+        return copied(usb::reportDescriptor());
     }
     switch (high(setup.value)) {
         case kDeviceType: return deviceDescriptor();
         case kConfigType: return index == 0 ? std::optional(configDescriptor()) : std::nullopt;
-        case kStringType: return string(index);
-        case kQualifierType:
-            return std::vector<std::uint8_t>{10, kQualifierType, 0x00, 0x02, 0, 0, 0, 64, 1, 0};
+        case kStringType: return usb::stringDescriptor(index, device_.serial());
+        case kQualifierType: return usb::qualifierDescriptor(kind_);
+        case kBosType: return usb::bosDescriptor(kind_);
         default: return std::nullopt;
     }
 }
@@ -169,6 +110,8 @@ UsbReply UsbDevice::standard(const UsbSetup& setup) {
                 device_.resetStream();
             }
             return done();
+        case kSetExitLatencies:
+        case kSetIsochronousDelay: return kind_ == CameraKind::Usb3 ? done() : stall();
         default: return stall();
     }
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "sim/device.h"
+#include "sim/usb_descriptors.h"
 
 namespace gonio::sim {
 
@@ -34,16 +35,11 @@ struct UsbReply {
     std::vector<std::uint8_t> data;  ///< IN only
 };
 
-struct UsbIds {
-    std::uint16_t vendor = 0x1209;
-    std::uint16_t product = 0x0001;
-};
-
 class UsbDevice {
 public:
-    static constexpr std::uint8_t kHidInterface = 0, kStreamInterface = 1;
-    static constexpr std::uint8_t kInterruptIn = 0x81, kInterruptOut = 0x01, kBulkIn = 0x82;
-    static constexpr std::size_t kBulkPacket = 512;  // high speed
+    static constexpr std::uint8_t kHidInterface = usb::kHidInterface;
+    static constexpr std::uint8_t kStreamInterface = usb::kStreamInterface;
+    static constexpr std::uint8_t kBulkIn = usb::kBulkIn;
 
     explicit UsbDevice(DeviceConfig config, UsbIds ids = {});
 
@@ -51,7 +47,8 @@ public:
     [[nodiscard]] const UsbIds& ids() const { return ids_; }
     [[nodiscard]] std::vector<std::uint8_t> deviceDescriptor() const;
     [[nodiscard]] std::vector<std::uint8_t> configDescriptor() const;
-    [[nodiscard]] static std::span<const std::uint8_t> reportDescriptor();
+    [[nodiscard]] CameraKind kind() const { return kind_; }
+    [[nodiscard]] std::size_t bulkPacket() const { return cameraLink(kind_).bulkPacket; }
 
     /// `out` is the data stage of a request to the device.
     UsbReply control(const UsbSetup& setup, std::span<const std::uint8_t> out = {});
@@ -71,10 +68,10 @@ private:
     UsbReply standard(const UsbSetup& setup);
     UsbReply hidClass(const UsbSetup& setup, std::span<const std::uint8_t> out);
     [[nodiscard]] std::optional<std::vector<std::uint8_t>> descriptor(const UsbSetup& setup) const;
-    [[nodiscard]] std::optional<std::vector<std::uint8_t>> string(std::uint8_t index) const;
     bool takeReport(std::span<const std::uint8_t> report);
     void dropHalfSent();
 
+    CameraKind kind_;
     Device device_;
     UsbIds ids_;
     std::uint8_t configuration_ = 1;

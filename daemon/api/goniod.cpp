@@ -49,14 +49,15 @@ sigset_t blockSignals() {
 }
 
 Result<std::unique_ptr<RigPort>> openPort(const std::string& rig,
-                                          const std::filesystem::path& store) {
+                                          const std::filesystem::path& store,
+                                          const RigProfile& profile) {
     const Result<RigChoice> choice = parseRigChoice(rig);
     if (!choice) return choice.error();
     if (!choice->simulated) {
         return std::unique_ptr<RigPort>(
             std::make_unique<UsbPort>(driver::UsbSelection{.serial = choice->serial}));
     }
-    Result<std::unique_ptr<SimPort>> sim = SimPort::open(store);
+    Result<std::unique_ptr<SimPort>> sim = SimPort::open(store, profile.cameraUsb);
     if (!sim) return sim.error();
     return std::unique_ptr<RigPort>(std::move(*sim));
 }
@@ -71,7 +72,7 @@ Result<void> serve(const DaemonOptions& options) {
     Result<RigProfile> profile =
         readProfile(options.profile.empty() ? defaultProfile() : options.profile);
     if (!profile) return profile.error();
-    Result<std::unique_ptr<RigPort>> port = openPort(options.rig, store);
+    Result<std::unique_ptr<RigPort>> port = openPort(options.rig, store, *profile);
     if (!port) return port.error();
     const driver::SteadyClock clock;
     Result<std::unique_ptr<Engine>> engine =

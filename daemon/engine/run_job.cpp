@@ -173,11 +173,11 @@ Result<Json> JobRun::calibrateTile(bool white) {
     about.truthSpec.clear();
     finish(about, *captured);
     const std::size_t states = captured->raw.states.size();
+    const std::vector<Radians> angles = bench_.rig.identify().ledAngles;
     const auto kept = alongside(bench_.rig, [&]() -> Result<CalibrationRecord> {
         const Result<std::string> raw = rawBytes(about, std::move(captured->raw.states));
         if (!raw) return raw.error();
-        const Result<std::string> bytes =
-            encodeReference({about, captured->signals}, bench_.rig.identify().ledAngles);
+        const Result<std::string> bytes = encodeReference({about, captured->signals}, angles);
         if (!bytes) return bytes.error();
         return bench_.store.addCalibration({.rig = serial_, .kind = kind, .dateUtc = about.dateUtc},
                                            {.file = *bytes, .raw = *raw});
@@ -285,11 +285,12 @@ Result<Json> JobRun::measure() {
     about.calibrationId = serial_ + "/" + white->info.dateUtc;
     finish(about, *captured);
     proc::SampleSet set;
+    const std::vector<Radians> angles = bench_.rig.identify().ledAngles;
     const auto kept = alongside(bench_.rig, [&] {
         const Stopwatch calibrating(bench_.computer);
         set = calibrateSample(captured->signals,
-                              bench_.rig.identify().ledAngles,
-                              {*lens, *white, *black, *certified},
+                              angles,
+                              {*lens, *white, *black, *certified, bench_.profile},
                               std::move(about));
         set.info.computeSeconds += calibrating.elapsed().count();
         return keep(set, std::move(captured->raw.states));

@@ -52,12 +52,12 @@ Result<void> check(const PlaceRequest& request) {
     return refused("a serial is 1 to 32 printable characters");
 }
 
-Result<std::unique_ptr<SimPort>> SimPort::open(const fs::path& root) {
+Result<std::unique_ptr<SimPort>> SimPort::open(const fs::path& root, int cameraUsb) {
     Result<Store> store = Store::open(root);
     if (!store) return store.error();
     Result<SimState> state = readSimState(*store);
     if (!state) return state.error();
-    return std::unique_ptr<SimPort>(new SimPort(std::move(*store), std::move(*state)));
+    return std::unique_ptr<SimPort>(new SimPort(std::move(*store), std::move(*state), cameraUsb));
 }
 
 Result<std::vector<RigListing>> SimPort::list() {
@@ -70,7 +70,7 @@ Result<std::vector<RigListing>> SimPort::list() {
 }
 
 Result<driver::Transport*> SimPort::open() {
-    auto door = openSim(state_, store_);
+    auto door = openSim(state_, store_, cameraUsb_);
     if (!door) return door.error();
     door_ = std::move(*door);
     return door_.get();
@@ -108,7 +108,7 @@ Result<bool> SimPort::place(const PlaceRequest& request) {
     const bool another = next.seed != state_.seed || next.serial != state_.serial ||
                          next.systematic != state_.systematic;
     if (another) {  // opening it now tells at once what is wrong with it
-        if (const auto door = openSim(next, store_); !door) return door.error();
+        if (const auto door = openSim(next, store_, cameraUsb_); !door) return door.error();
     }
     Result<sim::Placement> placement = makePlacement(next, store_);
     if (!placement) return placement.error();

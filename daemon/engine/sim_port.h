@@ -27,7 +27,9 @@ struct PlaceRequest {
 
 class SimPort : public RigPort {
 public:
-    [[nodiscard]] static Result<std::unique_ptr<SimPort>> open(const std::filesystem::path& store);
+    /// `cameraUsb`: 2 or 3, the bus that the rig profile's camera is on.
+    [[nodiscard]] static Result<std::unique_ptr<SimPort>> open(const std::filesystem::path& store,
+                                                               int cameraUsb = 2);
 
     [[nodiscard]] std::string_view kind() const override { return "sim"; }
     [[nodiscard]] Result<std::vector<RigListing>> list() override;
@@ -43,11 +45,13 @@ public:
     Result<bool> place(const PlaceRequest& request);
 
 private:
-    SimPort(Store store, SimState state) : store_(std::move(store)), state_(std::move(state)) {}
+    SimPort(Store store, SimState state, int cameraUsb)
+        : store_(std::move(store)), state_(std::move(state)), cameraUsb_(cameraUsb) {}
     void adopt(SimState state);
 
     Store store_;
     SimState state_;
+    int cameraUsb_;
     std::mutex mutex_;  ///< of the serial number, which list() reads
     std::unique_ptr<sim::InProcessDoor> door_;
 };

@@ -2,11 +2,18 @@
 // What the sensor says without light. A DarkFrame is the mean of N dark frames of one exposure, in
 // DN with the black level included, and the variance of that mean: read noise is alike all over a
 // sensor, so the variance is pooled over its pixels; with a single frame it is the noise model's.
+//
+// Hot pixels are not alike. A pixel whose mean stands more than 5 standard deviations of the mean
+// above the average of all is one: what it stands above them is dark current of its own, and has
+// shot noise of its own. The pooled variance leaves them out. One normal pixel in a million is
+// taken for hot by chance; a dark current whose noise is lost in the read noise stays unseen.
+//
 // A DarkLibrary holds one per granted exposure. Its match is exact: a dark frame of another
 // exposure holds another amount of dark current, and is refused by name rather than scaled.
 
 #include <map>
 #include <span>
+#include <vector>
 
 #include "proc/core/frame.h"
 #include "proc/core/result.h"
@@ -14,13 +21,21 @@
 
 namespace gonio::proc {
 
+struct HotPixel {
+    int x = 0, y = 0;
+    double excessDn = 0;  ///< of its mean above the average pixel's
+};
+
 struct DarkFrame {
     Image<float> mean;          ///< DN
-    double varianceOfMean = 0;  ///< DN^2, of each pixel of `mean`
+    double varianceOfMean = 0;  ///< DN^2, of each pixel of `mean` that is not hot
+    std::vector<HotPixel> hot;  ///< row by row, from left to right
     Exposure exposure;
     Window window;
     double gainDb = 0;
     int frames = 0;
+
+    [[nodiscard]] std::span<const HotPixel> hotInRow(int y) const;
 };
 
 /// Quality error when there is none, when one is lit, or when they differ in exposure or window.

@@ -19,6 +19,7 @@ struct RowSums {
     std::vector<double> dn;  ///< dark subtracted
     std::vector<int> count;
     std::vector<std::uint8_t> usable;  ///< of the frame at hand
+    std::vector<double> excess;        ///< of a hot pixel: more variance, electrons^2; mostly 0
 };
 
 /// What does not depend on the pixel, worked out once.
@@ -26,6 +27,7 @@ struct GroupConstants {
     double tau = 0;
     double floorVariance = 0;  ///< electrons^2, one sample in the dark
     double darkVariance = 0;   ///< electrons^2, of the dark frame
+    double excessInDark = 0;   ///< share of a sample's excess that the dark frame has
 };
 
 struct Tally {
@@ -47,7 +49,8 @@ public:
             const double analogue = noise.darkVariance(group.seconds) - rounding;
             constants_.push_back({.tau = group.tau,
                                   .floorVariance = analogue / members_ + rounding,
-                                  .darkVariance = group.dark->varianceOfMean * k_ * k_});
+                                  .darkVariance = group.dark->varianceOfMean * k_ * k_,
+                                  .excessInDark = 1.0 / std::max(1, group.dark->frames)});
             frames_ += group.frames.size();
         }
     }
@@ -57,7 +60,8 @@ public:
         std::vector<RowSums> sums(groups_.size(),
                                   {std::vector<double>(width),
                                    std::vector<int>(width),
-                                   std::vector<std::uint8_t>(width)});
+                                   std::vector<std::uint8_t>(width),
+                                   std::vector<double>(width)});
         Tally tally;
         for (std::size_t y = range.begin; y < range.end; ++y) {
             for (std::size_t g = 0; g < groups_.size(); ++g)
@@ -71,10 +75,18 @@ private:
     void accumulate(const ExposureGroup& group, int y, RowSums& sums) const {
         std::fill(sums.dn.begin(), sums.dn.end(), 0.0);
         std::fill(sums.count.begin(), sums.count.end(), 0);
+        std::fill(sums.excess.begin(), sums.excess.end(), 0.0);
         const auto dark = group.dark->mean.row(y);
+        const auto hot = group.dark->hotInRow(y);
+        for (const HotPixel& h : hot)
+            sums.excess[static_cast<std::size_t>(h.x)] = h.excessDn * k_ / members_;
         for (const Frame* frame : group.frames) {
             const auto row = frame->pixels.row(y);
             markUsable(frame->pixels, y, noise_, sums.usable);
+            for (const HotPixel& h : hot) {
+                sums.usable[static_cast<std::size_t>(h.x)] =
+                    usableReference(frame->pixels, h.x, y, noise_, h.excessDn) ? 1 : 0;
+            }
             for (std::size_t x = 0; x < row.size(); ++x) {
                 const int usable = sums.usable[x];
                 sums.dn[x] += usable * (row[x] - static_cast<double>(dark[x]));
@@ -113,8 +125,9 @@ private:
             const int n = sums[g].count[i];
             if (n == 0) continue;
             const GroupConstants& c = constants_[g];
-            const double variance =
-                (pooled * c.tau / members_ + c.floorVariance) / n + c.darkVariance;
+            const double excess = sums[g].excess[i];
+            const double single = pooled * c.tau / members_ + c.floorVariance + excess;
+            const double variance = single / n + (c.darkVariance + excess * c.excessInDark);
             const double weight = c.tau * c.tau / variance;
             const double value = sums[g].dn[i] * k_ / (n * c.tau);
             w += weight;

@@ -9,6 +9,9 @@
 //     x = sum w e / tau / sum w,   w = tau^2 / var,   var(x) = 1 / sum w,
 // where var of the mean of the n samples of one (exposure, level) is variance(x0 tau, t) / n plus
 // the variance of the dark frame. Weights from the noisy samples themselves would bias dim pixels.
+// A hot pixel (dark.h) of e_h electrons in the dark above the others has e_h more variance in each
+// sample and e_h / N more in the mean of N dark frames; a normal pixel's result does not change by
+// there being hot ones.
 //
 // Saturation is a hard mask (saturation.h), never on a prediction from other exposures. Negative
 // samples survive; nothing is clipped. A pixel saturated in every frame has radiance and variance

@@ -15,6 +15,7 @@ struct Samples {
     double tau = 0;
     double seconds = 0;
     double darkVariance = 0;
+    double excess = 0;  ///< electrons in the dark above a normal pixel's
     std::vector<double> electrons;
 
     [[nodiscard]] double mean() const {
@@ -37,6 +38,32 @@ double sampleVariance(double electrons, double seconds, const SensorNoise& noise
     return (noise.variance(electrons, seconds) - rounding) / members + rounding;
 }
 
+/// What the pixel reads in the dark above the others: 0 unless it is hot.
+double excessDn(const DarkFrame& dark, int x, int y) {
+    for (const HotPixel& hot : dark.hot) {
+        if (hot.x == x && hot.y == y) return hot.excessDn;
+    }
+    return 0;
+}
+
+/// What one group saw at one pixel.
+Samples samplesOf(const ExposureGroup& group, int x, int y, const SensorNoise& noise, int members) {
+    const double k = noise.electronsPerDn;
+    const double hot = excessDn(*group.dark, x, y);
+    Samples s{.tau = group.tau,
+              .seconds = group.seconds,
+              .darkVariance = group.dark->varianceOfMean * k * k +
+                              hot * k / (members * std::max(1, group.dark->frames)),
+              .excess = hot * k,
+              .electrons = {}};
+    for (const Frame* frame : group.frames) {
+        if (!usableReference(frame->pixels, x, y, noise, hot)) continue;
+        const double dark = static_cast<double>(group.dark->mean.at(x, y));
+        s.electrons.push_back((frame->pixels.at(x, y) - dark) * k);
+    }
+    return s;
+}
+
 Estimate estimate(const std::vector<Samples>& groups, const SensorNoise& noise, int members) {
     double electrons = 0, tau = 0;
     for (const Samples& g : groups) {
@@ -51,7 +78,8 @@ Estimate estimate(const std::vector<Samples>& groups, const SensorNoise& noise, 
     std::vector<std::pair<double, double>> weighted;
     for (const Samples& g : groups) {
         if (g.electrons.empty()) continue;
-        const double single = sampleVariance(pooled * g.tau, g.seconds, noise, members);
+        const double single =
+            sampleVariance(pooled * g.tau, g.seconds, noise, members) + g.excess / members;
         const double variance = single / static_cast<double>(g.electrons.size()) + g.darkVariance;
         const double weight = g.tau * g.tau / variance;
         weighted.emplace_back(weight, g.mean() / g.tau);
@@ -74,7 +102,7 @@ Result<MergedState> mergeReference(std::span<const Frame> bracket,
     if (!groups) return groups.error();
     const Frame& first = bracket.front();
     const Size size = first.pixels.size();
-    const double k = noise.electronsPerDn;
+    const int members = first.window.binning * first.window.binning;
     MergedState state;
     state.radiance = state.variance = Image<float>(size);
     state.used = state.saturated = Image<std::uint8_t>(size);
@@ -86,16 +114,9 @@ Result<MergedState> mergeReference(std::span<const Frame> bracket,
             std::vector<Samples> samples;
             std::size_t used = 0;
             for (const ExposureGroup& group : *groups) {
-                Samples s{group.tau, group.seconds, group.dark->varianceOfMean * k * k, {}};
-                for (const Frame* frame : group.frames) {
-                    if (!usableReference(frame->pixels, x, y, noise)) continue;
-                    const double dark = static_cast<double>(group.dark->mean.at(x, y));
-                    s.electrons.push_back((frame->pixels.at(x, y) - dark) * k);
-                }
-                used += s.electrons.size();
-                samples.push_back(s);
+                samples.push_back(samplesOf(group, x, y, noise, members));
+                used += samples.back().electrons.size();
             }
-            const int members = first.window.binning * first.window.binning;
             const Estimate e = estimate(samples, noise, members);
             state.radiance.at(x, y) = static_cast<float>(e.radiance);
             state.variance.at(x, y) = static_cast<float>(e.variance);

@@ -48,12 +48,13 @@ void markUsable(const Image<std::uint16_t>& picture,
     usable[last] = atEnd(last);
 }
 
-bool usableReference(const Image<std::uint16_t>& picture, int x, int y, const SensorNoise& noise) {
+bool usableReference(
+    const Image<std::uint16_t>& picture, int x, int y, const SensorNoise& noise, double excessDn) {
     const Beside columns = beside(x, picture.width());
     const Beside rows = beside(y, picture.height());
     const double around = picture.at(columns.before, y) + picture.at(columns.after, y) +
                           picture.at(x, rows.before) + picture.at(x, rows.after);
-    return around / 4 < noise.saturationDn() && picture.at(x, y) < noise.ceilingDn();
+    return around / 4 + excessDn < noise.saturationDn() && picture.at(x, y) < noise.ceilingDn();
 }
 
 }  // namespace gonio::proc

@@ -8,6 +8,10 @@
 // The second limit catches a pixel that stands out of its surroundings; 3.5 sigma above the first,
 // it cuts off less than 1e-3 of the noise of one that does not.
 //
+// A hot pixel stands above its surroundings by what it reads above them in the dark. Its own
+// verdict adds that excess to the mean of its neighbours, so that it does not hang on its own noise
+// either: one that is full in the dark is never usable.
+//
 // At the edge of the picture the neighbour inside counts twice; without any, the pixel itself.
 
 #include <cstdint>
@@ -24,10 +28,11 @@ void markUsable(const Image<std::uint16_t>& picture,
                 const SensorNoise& noise,
                 std::span<std::uint8_t> usable);
 
-/// The slow, obvious twin: one pixel.
+/// The slow, obvious twin: one pixel, which may be a hot one.
 [[nodiscard]] bool usableReference(const Image<std::uint16_t>& picture,
                                    int x,
                                    int y,
-                                   const SensorNoise& noise);
+                                   const SensorNoise& noise,
+                                   double excessDn = 0);
 
 }  // namespace gonio::proc

@@ -11,7 +11,10 @@
 namespace gonio::daemon {
 namespace {
 
-constexpr std::string_view kGood = R"(name = "bench"
+constexpr std::string_view kGood = R"(schema = "gonio/rig/1"
+name = "bench"
+[camera]
+usb = 3
 [sensor]
 electrons_per_dn = 2.6
 read_noise_electrons = 2.4
@@ -49,6 +52,7 @@ TEST_F(Profile, SortsItsLadders) {
     EXPECT_EQ(profile->exposures,
               (std::vector{Microseconds(20), Microseconds(80), Microseconds(320)}));
     EXPECT_EQ(profile->dimLevels, (std::vector{0.05, 0.0025}));
+    EXPECT_EQ(profile->cameraUsb, 3);
     EXPECT_EQ(profile->noise.electronsPerDn, 2.6);
     EXPECT_EQ(profile->blackReflectance, 0.001);
 }
@@ -63,7 +67,9 @@ TEST_F(Profile, HashFollowsTheBytes) {
 }
 
 TEST_F(Profile, EveryKeyIsAskedForByName) {
-    for (const std::string key : {"name",
+    for (const std::string key : {"schema",
+                                  "name",
+                                  "usb",
                                   "electrons_per_dn",
                                   "read_noise_electrons",
                                   "dark_electrons_per_second",
@@ -77,6 +83,29 @@ TEST_F(Profile, EveryKeyIsAskedForByName) {
         ASSERT_FALSE(profile) << key;
         EXPECT_EQ(profile.error().kind, ErrorKind::File);
         EXPECT_NE(profile.error().message.find(key + "'"), std::string::npos)
+            << profile.error().message;
+    }
+}
+
+TEST_F(Profile, RefusesAnotherSchemaAndSaysWhichItSaw) {
+    std::string text = without("schema");
+    text.insert(0, "schema = \"gonio/rig/2\"\n");
+    const auto newer = read(text);
+    ASSERT_FALSE(newer);
+    EXPECT_EQ(newer.error().kind, ErrorKind::File);
+    EXPECT_NE(newer.error().message.find("wanted \"gonio/rig/1\", saw \"gonio/rig/2\""),
+              std::string::npos)
+        << newer.error().message;
+    EXPECT_NE(read(without("schema")).error().message.find("it is missing"), std::string::npos);
+}
+
+TEST_F(Profile, ACameraSpeaksUsb2OrUsb3) {
+    for (const std::string bad : {"usb = 1", "usb = 4", "usb = \"3\"", "usb = 3.5"}) {
+        std::string text = without("usb");
+        text.insert(text.find("[camera]\n") + 9, bad + "\n");
+        const auto profile = read(text);
+        ASSERT_FALSE(profile) << bad;
+        EXPECT_NE(profile.error().message.find("'camera.usb': wanted 2 or 3"), std::string::npos)
             << profile.error().message;
     }
 }
@@ -111,6 +140,17 @@ TEST(RigProfile, DefaultIsGoodAndItsReferencesOpen) {
     EXPECT_EQ(references->white->certificate().uCommon, 0.005);
     EXPECT_EQ(references->white->certificate().uPerDirection, 0.003);
     EXPECT_EQ(references->black->certificate().uCommon, 0.10);
+}
+
+TEST(RigProfile, TheUsb3RigDiffersInItsCamera) {
+    const auto usb2 = readProfile(configDirectory() / "rigs" / "minidiff-usb2.toml");
+    const auto usb3 = readProfile(configDirectory() / "rigs" / "minidiff-usb3.toml");
+    ASSERT_TRUE(usb2) << usb2.error().message;
+    ASSERT_TRUE(usb3) << usb3.error().message;
+    EXPECT_EQ(usb2->cameraUsb, 2);
+    EXPECT_EQ(usb3->cameraUsb, 3);
+    EXPECT_EQ(usb2->exposures, usb3->exposures);
+    EXPECT_EQ(usb2->noise.fullScaleDn, usb3->noise.fullScaleDn);
 }
 
 TEST_F(Profile, WhiteWithoutATableIsAnOpenFallback) {

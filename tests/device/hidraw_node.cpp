@@ -92,7 +92,7 @@ int HidrawNode::answer(unsigned long request, UMockdevIoctlData* arg) {
     if (!data) return -EFAULT;
     const std::span bytes(data->data, size);
     umockdev_ioctl_data_unref(data);  // its parent keeps it
-    const auto descriptor = sim::UsbDevice::reportDescriptor();
+    const auto descriptor = sim::usb::reportDescriptor();
     switch (_IOC_NR(request)) {
         case _IOC_NR(HIDIOCGRDESCSIZE):
             *reinterpret_cast<int*>(bytes.data()) = static_cast<int>(descriptor.size());

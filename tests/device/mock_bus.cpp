@@ -56,7 +56,9 @@ std::string MockRig::hidNode() const { return "/dev/hidraw" + std::to_string(num
 /// What sysfs and udev of a Linux say of such a device.
 std::string MockRig::description() {
     std::vector<std::uint8_t> descriptors;
+    std::string speed;  // Mbit/s
     live_.with([&](sim::UsbDevice& usb) {
+        speed = usb.kind() == sim::CameraKind::Usb3 ? "5000" : "480";
         descriptors = usb.deviceDescriptor();
         const auto config = usb.configDescriptor();
         descriptors.insert(descriptors.end(), config.begin(), config.end());
@@ -74,7 +76,8 @@ std::string MockRig::description() {
            "\nE: SUBSYSTEM=usb\nE: DEVTYPE=usb_device\nE: DRIVER=usb\nE: BUSNUM=001\nE: DEVNUM=" +
            std::to_string(number_) + "\nE: DEVNAME=" + usbNode() +
            "\nE: PRODUCT=1209/1/100\nA: busnum=1\\n\nA: devnum=" + std::to_string(number_) +
-           "\\n\nA: speed=480\\n\nA: bConfigurationValue=1\\n\nA: idVendor=1209\\n\n"
+           "\\n\nA: speed=" + speed +
+           "\\n\nA: bConfigurationValue=1\\n\nA: idVendor=1209\\n\n"
            "A: idProduct=0001\\n\nA: bcdDevice=0100\\n\nA: serial=" +
            serial_ + "\\n\nA: manufacturer=gonio\\n\nA: product=simulated rig\\n\nH: descriptors=" +
            hex(descriptors) + "\n\n" + interface(0, "03") + interface(1, "ff") + "P: " + hid +
@@ -84,8 +87,8 @@ std::string MockRig::description() {
            "\nA: uevent=HID_ID=0003:00001209:00000001\\n" +
            "HID_NAME=gonio simulated rig\\nHID_PHYS=usb-1-" + port +
            "/input0\\nHID_UNIQ=" + serial_ +
-           "\\n\nH: report_descriptor=" + hex(sim::UsbDevice::reportDescriptor()) +
-           "\n\nP: " + hid + "/hidraw" + hidNode().substr(4) + "\nN: " + hidNode().substr(5) +
+           "\\n\nH: report_descriptor=" + hex(sim::usb::reportDescriptor()) + "\n\nP: " + hid +
+           "/hidraw" + hidNode().substr(4) + "\nN: " + hidNode().substr(5) +
            "\nE: SUBSYSTEM=hidraw\nE: DEVNAME=" + hidNode() + "\nL: device=../../../" + hidName() +
            "\n\n";
 }

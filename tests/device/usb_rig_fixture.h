@@ -26,7 +26,7 @@ inline sim::Placement mattGrey() {
 
 class UsbRigTest : public testing::Test {
 protected:
-    UsbRigTest() {
+    explicit UsbRigTest(const sim::DeviceConfig& config = rigConfig()) : mock(bus, config) {
         mock.live().with([](sim::UsbDevice& usb) { usb.device().place(mattGrey()); });
     }
     /// The transport, or a failed test.
@@ -37,7 +37,7 @@ protected:
     }
 
     MockBus bus;
-    MockRig mock{bus, rigConfig()};
+    MockRig mock;
 };
 
 inline driver::CaptureRequest litFrames(std::uint64_t planStep, int frames = 1) {

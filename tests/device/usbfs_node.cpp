@@ -179,11 +179,16 @@ bool UsbfsNode::advanceBulk() {
     if (live_.faults.hung || waiting_.empty()) return false;
     Urb& urb = waiting_.front();
     const auto length = static_cast<std::size_t>(urbOf(urb.data).buffer_length);
-    urb.reply = live_.with([&](sim::UsbDevice& usb) { return usb.bulkIn(length); });
+    bool wholePackets = true;
+    urb.reply = live_.with([&](sim::UsbDevice& usb) {
+        wholePackets = length % usb.bulkPacket() == 0;
+        return usb.bulkIn(length);
+    });
     if (urb.reply.answer == sim::UsbAnswer::Nak) return false;
     if (urb.reply.answer == sim::UsbAnswer::Stall) {
         urb.status = -EPIPE;
-    } else if (takeOne(live_.faults.overflow)) {
+    } else if (takeOne(live_.faults.overflow) || !wholePackets) {
+        // A buffer that ends inside a packet has no room for a full one.
         urb.status = -EOVERFLOW;
     } else if (takeOne(live_.faults.protocolErrors)) {
         urb.status = -EPROTO;

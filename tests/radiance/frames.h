@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include "proc/core/frame.h"
 #include "proc/radiance/noise.h"
@@ -19,7 +20,16 @@ struct Shot {
     std::uint16_t level = 65535;  ///< 0: a dark frame
 };
 
-inline Frame take(const Shot& shot, Size size, std::mt19937_64& random) {
+/// A pixel with a dark current of its own.
+struct Hot {
+    int x = 0, y = 0;
+    double electronsPerSecond = 0;
+};
+
+inline Frame take(const Shot& shot,
+                  Size size,
+                  std::mt19937_64& random,
+                  const std::vector<Hot>& hot = {}) {
     const proc::SensorNoise noise;
     Frame frame;
     frame.pixels = Image<std::uint16_t>(size);
@@ -28,16 +38,21 @@ inline Frame take(const Shot& shot, Size size, std::mt19937_64& random) {
     frame.blackLevel = static_cast<std::uint16_t>(kBlackDn);
     frame.levels = LedLevels::only(Band::G, shot.level);
     if (shot.level > 0) frame.led = 1;
-    const double mean = shot.electronsPerSecond * shot.seconds * shot.level / 65535.0 +
-                        noise.darkElectronsPerSecond * shot.seconds;
-    // Far above full scale all pictures are alike; and where the mean does not fit an int, the
-    // distribution would look for a number for ever.
-    std::poisson_distribution<int> light(std::clamp(mean, 1e-12, 1e6));
+    const double lit = shot.electronsPerSecond * shot.seconds * shot.level / 65535.0;
     std::normal_distribution<double> read(0, noise.readNoiseElectrons);
-    for (std::uint16_t& pixel : frame.pixels.pixels()) {
-        const double dn = kBlackDn + (light(random) + read(random)) / noise.electronsPerDn;
-        pixel = static_cast<std::uint16_t>(std::clamp(std::round(dn), 0.0, noise.fullScaleDn));
-    }
+    const auto exposed = [&](double darkPerSecond) {
+        // Far above full scale all pictures are alike; and where the mean does not fit an int, the
+        // distribution would look for a number for ever.
+        std::poisson_distribution<int> light(
+            std::clamp(lit + darkPerSecond * shot.seconds, 1e-12, 1e6));
+        return [&read, &random, &noise, light]() mutable {
+            const double dn = kBlackDn + (light(random) + read(random)) / noise.electronsPerDn;
+            return static_cast<std::uint16_t>(std::clamp(std::round(dn), 0.0, noise.fullScaleDn));
+        };
+    };
+    auto normal = exposed(noise.darkElectronsPerSecond);
+    for (std::uint16_t& pixel : frame.pixels.pixels()) pixel = normal();
+    for (const Hot& h : hot) frame.pixels.at(h.x, h.y) = exposed(h.electronsPerSecond)();
     return frame;
 }
 

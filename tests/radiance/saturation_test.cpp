@@ -31,6 +31,16 @@ TEST(Saturation, NeighboursDecideAtNinetyFivePerCent) {
     EXPECT_FALSE(usableAt(one, 2, 2));  // low by its own noise alone
 }
 
+TEST(Saturation, AHotPixelsExcessIsAddedToItsNeighbours) {
+    Picture picture({5, 5}, 1000);
+    picture.at(2, 2) = 3890;
+    EXPECT_TRUE(usableReference(picture, 2, 2, {}, 2890));  // 3890 < 3890.25
+    EXPECT_FALSE(usableReference(picture, 2, 2, {}, 2890.5));
+    EXPECT_TRUE(usableReference(picture, 2, 2, {}, 0));
+    picture.at(2, 2) = 60;  // low by its own noise alone
+    EXPECT_FALSE(usableReference(picture, 2, 2, {}, 2890.5));
+}
+
 TEST(Saturation, EdgesHaveNeighboursInsideOnly) {
     Picture picture({3, 3}, 100);
     picture.at(1, 0) = 4095;

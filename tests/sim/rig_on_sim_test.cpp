@@ -47,6 +47,43 @@ TEST(RigOnSim, TakesFramesAsPlanned) {
     EXPECT_EQ(rig->anomalies(), driver::Anomalies{});
 }
 
+/// Virtual seconds that a rig takes for dark full frames of the host's window.
+double secondsFor(int frames, sim::CameraKind camera) {
+    sim::InProcessDoor door({.errors = {}, .camera = camera});
+    auto rig = driver::Rig::open(door, kSession);
+    EXPECT_TRUE(rig);
+    EXPECT_TRUE(rig->configure(kWindow));
+    const Nanoseconds begin = door.device().now();
+    const auto capture = rig->capture({.planStep = 1,
+                                       .led = std::nullopt,
+                                       .levels = {},
+                                       .exposure = Microseconds(320),
+                                       .frames = frames});
+    EXPECT_TRUE(capture) << capture.error().message;
+    EXPECT_EQ(rig->anomalies(), driver::Anomalies{});
+    return std::chrono::duration<double>(door.device().now() - begin).count();
+}
+
+TEST(RigOnSim, SixtyFramesOfAUsb3CameraTakeASecond) {
+    // 59 periods, the last exposure, its 4 ms on the bus and the commands around.
+    EXPECT_NEAR(secondsFor(60, sim::CameraKind::Usb3), 1, 0.015);
+}
+
+TEST(RigOnSim, TenFramesOfAUsb2CameraTakeFourTenthsOfASecond) {
+    EXPECT_NEAR(secondsFor(10, sim::CameraKind::Usb2), 0.4, 0.015);
+}
+
+TEST(RigOnSim, LimitsTellTheFramePeriodOfTheCamera) {
+    const auto periodOf = [](sim::CameraKind camera) {
+        sim::InProcessDoor door({.errors = {}, .camera = camera});
+        auto rig = driver::Rig::open(door, kSession);
+        EXPECT_TRUE(rig);
+        return rig->identify().framePeriod;
+    };
+    EXPECT_EQ(periodOf(sim::CameraKind::Usb2), Microseconds(40'000));
+    EXPECT_EQ(periodOf(sim::CameraKind::Usb3), Microseconds(16'667));
+}
+
 TEST(RigOnSim, DarkFramesShowTheBlackLevel) {
     sim::InProcessDoor door({});
     auto rig = driver::Rig::open(door, kSession);

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace gonio::sim {
 namespace {
@@ -83,19 +85,86 @@ TEST(Sensor, ResponsesScatterBySevenTenthsOfAPerCent) {
     EXPECT_NEAR(std::sqrt(squares / kPixels), 0.007, 0.0002);
 }
 
-TEST(Sensor, DarkCurrentDoublesEachSevenKelvin) {
+/// Mean DN above the black level of a dark exposure, over the hot pixels or over the others.
+double darkDn(double celsius, Nanoseconds exposure, bool hot) {
     constexpr View kPart{.size = {256, 256}};
-    constexpr Nanoseconds kExposure(20'000'000'000);
-    const auto meanDn = [&](double celsius) {
-        const auto frame =
-            Sensor("SIM-0001", celsius).expose(nullptr, 0, kExposure, kPart, {1, 1, 0}, 1);
-        double sum = 0;
-        for (const std::uint16_t dn : frame.pixels()) sum += dn - kBlackLevel;
-        return sum / static_cast<double>(frame.pixels().size());
-    };
+    const Sensor sensor("SIM-0001", celsius);
+    const auto frame = sensor.expose(nullptr, 0, exposure, kPart, {1, 1, 0}, 1);
+    double sum = 0;
+    double count = 0;
+    for (int y = 0; y < kPart.size.height; ++y) {
+        for (int x = 0; x < kPart.size.width; ++x) {
+            const int pixel = y * kSensorSize.width + x;
+            if ((sensor.darkCurrent(static_cast<std::uint64_t>(pixel)) > kDarkAt25) != hot)
+                continue;
+            sum += frame.at(x, y) - kBlackLevel;
+            ++count;
+        }
+    }
+    return sum / count;
+}
+
+TEST(Sensor, DarkCurrentDoublesEachSevenKelvin) {
     // 60 and 120 electrons at 2.6 e-/DN; the mean of 65,536 pixels is known to 0.02 DN.
-    EXPECT_NEAR(meanDn(25), 60 / 2.6, 0.1);
-    EXPECT_NEAR(meanDn(32), 120 / 2.6, 0.1);
+    constexpr Nanoseconds kExposure(20'000'000'000);
+    EXPECT_NEAR(darkDn(25, kExposure, false), 60 / 2.6, 0.1);
+    EXPECT_NEAR(darkDn(32, kExposure, false), 120 / 2.6, 0.1);
+}
+
+TEST(Sensor, HotPixelsDoubleEachSevenKelvinToo) {
+    // A dozen of them with some 250 DN each: sqrt(12 x 250 / 2.6) = 34 DN of noise in 3000.
+    constexpr Nanoseconds kExposure(1'000'000'000);
+    const double at25 = darkDn(25, kExposure, true);
+    EXPECT_GT(at25, 30 / 2.6);
+    EXPECT_NEAR(darkDn(32, kExposure, true) / at25, 2, 0.1);
+    EXPECT_NEAR(darkDn(18, kExposure, true) / at25, 0.5, 0.05);
+}
+
+std::vector<double> hotOf(const Sensor& sensor) {
+    std::vector<double> hot;
+    const auto pixels = static_cast<std::uint64_t>(kSensorSize.pixels());
+    for (std::uint64_t i = 0; i < pixels; ++i) {
+        const double dark = sensor.darkCurrent(i);
+        if (dark != kDarkAt25) hot.push_back(dark);
+    }
+    return hot;
+}
+
+TEST(Sensor, OnePixelInFiveThousandIsHotAsManyInEachOctave) {
+    std::vector<double> hot = hotOf(Sensor("SIM-0001"));
+    const double expected = kHotShare * static_cast<double>(kSensorSize.pixels());  // 262
+    EXPECT_NEAR(static_cast<double>(hot.size()), expected, 4 * std::sqrt(expected));
+    std::sort(hot.begin(), hot.end());
+    EXPECT_GE(hot.front(), kLeastHotAt25);
+    EXPECT_LE(hot.back(), kHottestAt25);
+    // ln(dark current) is uniform: no quantile is off by more than 4 x 0.5 / sqrt(262).
+    for (std::size_t i = 0; i < hot.size(); ++i) {
+        const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(hot.size());
+        EXPECT_NEAR(std::log(hot[i] / 30) / std::log(100), share, 0.125);
+    }
+}
+
+TEST(Sensor, HotPixelsAreThoseOfTheSerialNumber) {
+    EXPECT_EQ(hotOf(Sensor("SIM-0001")), hotOf(Sensor("SIM-0001", 60)));
+    EXPECT_NE(hotOf(Sensor("SIM-0001")), hotOf(Sensor("SIM-0002")));
+}
+
+TEST(Sensor, AHotPixelIsHotInEveryView) {
+    const Sensor sensor("SIM-0001");
+    constexpr Nanoseconds kExposure(1'000'000'000);
+    constexpr View kPart{.x = 400, .y = 300, .size = {256, 256}};
+    const auto frame = sensor.expose(nullptr, 0, kExposure, kPart, {1, 1, 0}, 1);
+    int hot = 0;
+    for (int y = 0; y < 256; ++y) {
+        for (int x = 0; x < 256; ++x) {
+            const int pixel = (kPart.y + y) * kSensorSize.width + kPart.x + x;
+            const double electrons = sensor.darkCurrent(static_cast<std::uint64_t>(pixel));
+            if (electrons < 100) continue;
+            ++hot;
+            EXPECT_NEAR(frame.at(x, y), 60 + electrons / 2.6, 6 * std::sqrt(electrons) / 2.6);
+        }
+    }
+    EXPECT_GT(hot, 3);
 }
 
 TEST(Sensor, PixelsKeepTheirResponseInEveryView) {

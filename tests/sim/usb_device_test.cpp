@@ -12,7 +12,9 @@ using driver::ReportId;
 constexpr std::uint8_t kIn = 0x80, kToInterface = 0x01, kClassIn = 0xA1, kClassOut = 0x21;
 constexpr std::uint8_t kGetDescriptor = 6, kSetConfiguration = 9, kSetInterface = 11;
 constexpr std::uint8_t kGetReport = 1, kSetReport = 9, kClearFeature = 1, kToEndpoint = 0x02;
-constexpr std::size_t kPacket = UsbDevice::kBulkPacket;
+constexpr std::uint8_t kEndpoint = 5, kQualifier = 6, kBos = 0x0F, kCompanion = 0x30;
+constexpr std::uint8_t kSetExitLatencies = 48;
+constexpr std::size_t kPacket = cameraLink(CameraKind::Usb2).bulkPacket;
 constexpr std::size_t kBuffer = (64 + 256 * 1024) / kPacket * kPacket + 2 * kPacket;
 
 std::uint16_t pair(std::uint8_t high, std::uint8_t low) {
@@ -68,6 +70,57 @@ TEST_F(UsbDeviceTest, DescribesTwoInterfacesAndTheirEndpoints) {
     EXPECT_EQ(pair(config[3], config[2]), config.size());
     EXPECT_EQ(config[4], 2);
     EXPECT_EQ(config[config.size() - 5], UsbDevice::kBulkIn);
+}
+
+TEST_F(UsbDeviceTest, AHighSpeedRigHasAQualifierAndNoBos) {
+    EXPECT_EQ(pair(usb.deviceDescriptor()[3], usb.deviceDescriptor()[2]), 0x0200);
+    EXPECT_EQ(get(kIn, kQualifier, 0, 255).data.size(), 10U);
+    EXPECT_EQ(get(kIn, kBos, 0, 255).answer, UsbAnswer::Stall);
+    EXPECT_EQ(usb.control({.request = kSetExitLatencies, .length = 6}).answer, UsbAnswer::Stall);
+}
+
+TEST(UsbDevice, ASuperSpeedRigDescribesItselfInTheFormsOfUsb3) {
+    UsbDevice usb({.serial = "SIM-0042", .errors = {}, .camera = CameraKind::Usb3});
+    const auto device = usb.deviceDescriptor();
+    EXPECT_EQ(pair(device[3], device[2]), 0x0300);
+    EXPECT_EQ(device[7], 9);  // 2^9 bytes
+    const auto get = [&](std::uint8_t type) {
+        return usb.control(
+            {.requestType = kIn, .request = kGetDescriptor, .value = pair(type, 0), .length = 255});
+    };
+    EXPECT_EQ(get(kQualifier).answer, UsbAnswer::Stall);
+    const auto bos = get(kBos).data;
+    ASSERT_EQ(bos.size(), 5U + 7 + 10);
+    EXPECT_EQ(pair(bos[3], bos[2]), bos.size());
+    EXPECT_EQ(bos[4], 2);
+    EXPECT_EQ(bos[5 + 2], 2);      // USB 2.0 extension
+    EXPECT_EQ(bos[5 + 7 + 2], 3);  // SuperSpeed
+    EXPECT_EQ(usb.control({.request = kSetExitLatencies, .length = 6}).answer, UsbAnswer::Done);
+}
+
+TEST(UsbDevice, EverySuperSpeedEndpointHasACompanion) {
+    const UsbDevice usb({.serial = "SIM-0042", .errors = {}, .camera = CameraKind::Usb3});
+    const auto config = usb.configDescriptor();
+    ASSERT_EQ(pair(config[3], config[2]), config.size());
+    std::size_t bulkPacket = 0;
+    int endpoints = 0, companions = 0;
+    for (std::size_t at = 0; at < config.size(); at += config[at]) {
+        ASSERT_GT(config[at], 1) << at;  // every descriptor says how long it is
+        ASSERT_LE(at + config[at], config.size());
+        if (config[at + 1] == kEndpoint) {
+            ++endpoints;
+            const std::size_t behind = at + config[at];
+            ASSERT_LT(behind + 5, config.size());
+            EXPECT_EQ(config[behind + 1], kCompanion);
+            if (config[at + 2] == UsbDevice::kBulkIn)
+                bulkPacket = pair(config[at + 5], config[at + 4]);
+        }
+        companions += config[at + 1] == kCompanion ? 1 : 0;
+    }
+    EXPECT_EQ(endpoints, 3);
+    EXPECT_EQ(companions, 3);
+    EXPECT_EQ(bulkPacket, 1024U);
+    EXPECT_EQ(usb.bulkPacket(), 1024U);
 }
 
 TEST_F(UsbDeviceTest, ADescriptorIsCutToWhatWasAskedFor) {
