@@ -1,0 +1,205 @@
+// goniod and gonio as they are shipped, on a rig on USB: the real libraries in the daemon's process,
+// the simulated rig behind the mocked bus in this one.
+
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "daemon/measurement.h"
+#include "daemon/sim_bench.h"
+#include "tests/daemon/cli/running_daemon.h"
+#include "tests/device/usb_rig_fixture.h"
+
+namespace gonio::device_test {
+namespace {
+
+using Json = nlohmann::json;
+using namespace std::chrono_literals;
+
+constexpr const char* kSerial = "SIM-0042";
+constexpr std::uint64_t kSeed = 11;
+constexpr const char* kSample = "model:lambert,albedo=0.3/0.2/0.1+ggx,alpha=0.3,f0=0.04";
+// At most what the protocol allows, on a machine that does other things besides.
+constexpr auto kPatience = 30s;
+
+/// A rig, and the person who puts things under it.
+class Lab : public testing::Test {
+protected:
+    void SetUp() override { place("nothing"); }
+    void place(const std::string& what, const sim::Wedge& wedge = {}) {
+        auto store = daemon::Store::open(gonio / "store");
+        ASSERT_TRUE(store) << store.error().message;
+        auto placement = daemon::makePlacement(
+            {.serial = kSerial, .seed = kSeed, .placed = what, .wedge = wedge}, *store);
+        ASSERT_TRUE(placement) << placement.error().message;
+        rig.live().with(
+            [&](sim::UsbDevice& usb) { usb.device().place(std::move(*placement)); });
+    }
+    Json ask(std::vector<std::string> arguments) const {
+        arguments.insert(arguments.begin(), "--json");
+        const test::Ran ran = gonio(arguments);
+        EXPECT_EQ(ran.exitCode, 0) << ran.err;
+        return Json::parse(ran.out, nullptr, false);
+    }
+    [[nodiscard]] Json status() const { return ask({"status"}); }
+    /// Waits until the daemon's status is as wanted; the seconds that it took.
+    template <class Wanted>
+    double await(const std::string& what, Wanted wanted) const {
+        const auto begin = std::chrono::steady_clock::now();
+        while (std::chrono::steady_clock::now() - begin < kPatience) {
+            if (wanted(status())) break;
+            std::this_thread::sleep_for(20ms);
+        }
+        const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+        EXPECT_LT(took, kPatience) << "not seen: " << what;
+        return took.count();
+    }
+    void awaitState(const std::string& state) const {
+        await(state, [&](const Json& now) { return now["rig"]["state"] == state; });
+    }
+    [[nodiscard]] pid_t begin(std::vector<std::string> arguments) const {
+        arguments.insert(arguments.begin(),
+                         {GONIO_PROGRAM, "--store", (gonio / "store").string()});
+        return test::spawnProcess(arguments, gonio / "client.out", gonio / "client.err");
+    }
+    [[nodiscard]] int end(pid_t client) const {
+        int code = 0;
+        waitpid(client, &code, 0);
+        return test::exitCodeOf(code);
+    }
+    [[nodiscard]] std::uint32_t lit() {
+        return rig.live().with([](sim::UsbDevice& usb) {
+            const auto report = usb.device().getFeature(0x10);
+            return report ? driver::decodeStatus(*report).ledOn : ~0U;
+        });
+    }
+
+    test::Program gonio;
+    MockBus bus;
+    MockRig rig{bus,
+                {.serial = kSerial,
+                 .seed = kSeed,
+                 .bootCount = 1,
+                 .errors = *sim::ReferenceErrors::parse("none", kSeed)}};
+};
+
+/// The largest resident set of a process so far, MiB.
+double mostMebibytes(pid_t pid) {
+    std::ifstream in("/proc/" + std::to_string(pid) + "/status");
+    for (std::string line; std::getline(in, line);) {
+        if (line.starts_with("VmHWM:")) return std::stod(line.substr(6)) / 1024;
+    }
+    return 0;
+}
+
+/// Each cell's value and uncertainty, as text.
+std::string csvOf(const test::Program& gonio, const std::string& sample) {
+    const std::string file = gonio / (sample + ".csv");
+    EXPECT_EQ(gonio({"convert", "sample:" + sample, file, "-q"}).exitCode, 0);
+    return test::textOf(file);
+}
+
+/// The same on the simulated rig in the daemon's own process.
+std::string inProcess() {
+    const test::Program gonio;
+    const test::RunningDaemon daemon(gonio);
+    const auto run = [&](const std::vector<std::string>& arguments) {
+        const test::Ran ran = gonio(arguments);
+        EXPECT_EQ(ran.exitCode, 0) << ran.err;
+    };
+    run({"sim", "place", "mirror", "--serial", kSerial, "--seed", std::to_string(kSeed),
+         "--systematic", "none", "-q"});
+    run({"calibrate", "mirror", "-q"});
+    for (const std::string tile : {"black", "white"}) {
+        run({"sim", "place", tile, "-q"});
+        run({"calibrate", tile, "-q"});
+    }
+    run({"sim", "place", kSample, "-q"});
+    run({"measure", "x", "--effort", "draft", "-q"});
+    return csvOf(gonio, "x");
+}
+
+TEST_F(Lab, MeasuresOnUsbWhatItMeasuresInProcess) {
+    test::RunningDaemon daemon(gonio, {"--rig", "usb"});
+    awaitState("idle");
+    EXPECT_EQ(ask({"rigs"})["rigs"][0]["serial"], kSerial);
+    const double idle = mostMebibytes(daemon.pid());
+
+    const pid_t mirror = begin({"--yes", "calibrate", "mirror"});
+    (void)mirror;
+    ::kill(mirror, SIGKILL);  // the person works at another terminal
+    (void)end(mirror);
+    for (const proc::Wedge& wedge : proc::mirrorWedges()) {
+        await("a wish for a mirror",
+              [](const Json& now) { return now["job"].is_object() && now["job"]["wanted"].is_string(); });
+        place("mirror", {wedge.aboutX, wedge.aboutY});
+        ask({"jobs", "proceed"});
+    }
+    awaitState("idle");
+    for (const std::string tile : {"black", "white"}) {
+        place(tile);
+        ask({"calibrate", tile});
+    }
+    place(kSample);
+    const Json measured = ask({"measure", "x", "--effort", "draft"});
+    std::cout << "goniod: " << idle << " MiB idle, " << mostMebibytes(daemon.pid())
+              << " MiB at most; a draft measurement " << measured["rig_seconds"] << " s on the rig, "
+              << measured["compute_seconds"] << " s computing\n";
+    EXPECT_LE(mostMebibytes(daemon.pid()), 150);
+    EXPECT_EQ(csvOf(gonio, "x"), inProcess());
+    EXPECT_EQ(daemon.end(), 0) << daemon.log();
+    EXPECT_EQ(lit(), 0U);
+}
+
+TEST_F(Lab, UnpluggedInTheMiddleTheJobIsInterruptedAndTheRigIsFoundAgain) {
+    test::RunningDaemon daemon(gonio, {"--rig", "usb"});
+    awaitState("idle");
+    const pid_t client = begin({"--yes", "calibrate", "mirror"});
+    await("the third step",
+          [](const Json& now) { return now["job"].is_object() && now["job"]["step"] >= 3; });
+    rig.unplug();
+    EXPECT_EQ(end(client), 5) << test::textOf(gonio / "client.err");
+    const Json job = ask({"jobs"})["jobs"][0];
+    EXPECT_EQ(job["state"], "interrupted") << job;
+    const Json after = status();
+    EXPECT_EQ(after["rig"]["state"], "interrupted") << after;
+    EXPECT_EQ(gonio({"calibrate", "mirror"}).exitCode, 3);
+    rig.plug();
+    awaitState("idle");
+    EXPECT_EQ(lit(), 0U);
+}
+
+TEST_F(Lab, KilledInTheMiddleTheRigGoesDarkAndTheNextDaemonTakesItUp) {
+    std::optional<test::RunningDaemon> daemon;
+    daemon.emplace(gonio, std::vector<std::string>{"--rig", "usb"});
+    awaitState("idle");
+    const pid_t client = begin({"--yes", "calibrate", "mirror"});
+    await("a lit LED", [&](const Json&) { return lit() != 0; });
+    daemon->end(SIGKILL);
+    EXPECT_EQ(end(client), 3);
+    daemon.emplace(gonio, std::vector<std::string>{"--rig", "usb"});
+    awaitState("idle");  // by the same claim, before the rig has missed the first one's heartbeat
+    const auto begun = std::chrono::steady_clock::now();
+    while (lit() != 0 && std::chrono::steady_clock::now() - begun < 2500ms) {
+        std::this_thread::sleep_for(10ms);
+    }
+    EXPECT_EQ(lit(), 0U);
+    EXPECT_EQ(ask({"jobs"})["jobs"][0]["state"], "interrupted");
+}
+
+TEST_F(Lab, OpenInterlockFailsTheJobAndIsOverWhenItCloses) {
+    test::RunningDaemon daemon(gonio, {"--rig", "usb"});
+    awaitState("idle");
+    const pid_t client = begin({"--yes", "calibrate", "mirror"});
+    await("a lit LED", [&](const Json&) { return lit() != 0; });
+    rig.live().with([](sim::UsbDevice& usb) { usb.device().setInterlock(0); });
+    EXPECT_EQ(end(client), 5) << test::textOf(gonio / "client.err");
+    awaitState("fault");
+    EXPECT_EQ(gonio({"calibrate", "mirror"}).exitCode, 5);
+    rig.live().with(
+        [](sim::UsbDevice& usb) { usb.device().setInterlock(driver::interlock::kMayLight); });
+    awaitState("idle");
+}
+
+}  // namespace
+}  // namespace gonio::device_test
