@@ -305,7 +305,7 @@ Result<void> measure(const CommonOptions& common, const MeasureOptions& options)
     const Stopwatch calibrating(session.computer);
     proc::SampleSet set = calibrateSample(captured->signals,
                                           session.rig.identify().ledAngles,
-                                          {*lens, *white, *black, *certified},
+                                          {*lens, *white, *black, *certified, session.profile},
                                           std::move(info));
     set.info.computeSeconds += calibrating.elapsed().count();
 
