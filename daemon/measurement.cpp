@@ -190,7 +190,7 @@ proc::SampleSet calibrateSample(const PlacementSignals& signals,
     proc::SampleSet set;
     Json budgets = Json::array();
     std::vector<double> relative;
-    const proc::DirectionUncertainty uAngle(references.lens.fit);
+    const proc::AngleUncertainty uAngle = proc::DirectionUncertainty(references.lens.fit);
     for (std::size_t led = 0; led < signals.size(); ++led) {
         proc::LedTable table{.incidence = ledAngles[led], .bands = {}};
         for (Band band : kBands) {
@@ -203,7 +203,7 @@ proc::SampleSet calibrateSample(const PlacementSignals& signals,
                                  .black = *references.certified.black},
                                 lightAt(ledAngles[led]),
                                 band,
-                                uAngle);
+                                {.angle = uAngle, .ledDrift = references.profile.ledDrift});
             const proc::CellSamples& cells = calibrated.samples;
             for (std::size_t cell = 0; cell < cells.size(); ++cell) {
                 if (cells.present(cell) && cells.f[cell] > 0) {

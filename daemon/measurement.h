@@ -63,6 +63,7 @@ struct RigReferences {
     const ReferenceRecord& white;
     const ReferenceRecord& black;
     const References& certified;
+    const RigProfile& profile;
 };
 [[nodiscard]] proc::SampleSet calibrateSample(const PlacementSignals& signals,
                                               const std::vector<Radians>& ledAngles,

@@ -32,6 +32,12 @@ public:
         if (!value || !(*value > 0)) complain(key, "a number above 0");
         return value.value_or(1);
     }
+    /// From 0 to below 1.
+    double relative(std::string_view key) {
+        const auto value = table_.at_path(key).value<double>();
+        if (!value || !(*value >= 0 && *value < 1)) complain(key, "a number from 0 to below 1");
+        return value.value_or(0);
+    }
     std::string text(std::string_view key) {
         const auto value = table_.at_path(key).value<std::string>();
         if (!value || value->empty()) complain(key, "a text");
@@ -145,6 +151,7 @@ Result<RigProfile> readProfile(const fs::path& file) {
     profile.noise.readNoiseElectrons = keys.positive("sensor.read_noise_electrons");
     profile.noise.darkElectronsPerSecond = keys.positive("sensor.dark_electrons_per_second");
     profile.noise.fullScaleDn = keys.positive("sensor.full_scale_dn");
+    profile.ledDrift = keys.relative("led.drift_relative");
     profile.exposures = keys.wholeMicroseconds("bracket.exposures_us");
     profile.dimLevels = keys.fractions("bracket.dim_levels");
     const std::string white = keys.text("references.white");

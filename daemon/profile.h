@@ -16,6 +16,7 @@ struct RigProfile {
     std::string hash;   ///< of the file's bytes: eight hexadecimal digits
     int cameraUsb = 2;  ///< the camera's USB, 2 or 3; a rig tells its own frame period
     proc::SensorNoise noise;
+    double ledDrift = 0;                   ///< of the light between two captures, relative, k = 1
     std::vector<Microseconds> exposures;   ///< ascending
     std::vector<double> dimLevels;         ///< fractions of full level, descending
     std::filesystem::path whiteReference;  ///< empty ("1/pi" in the file): without a table

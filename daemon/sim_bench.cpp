@@ -12,6 +12,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kSchema = "gonio/sim/1";
+constexpr double kLedDrift = 0.002;
 
 }  // namespace
 
@@ -76,12 +77,13 @@ Result<std::unique_ptr<sim::InProcessDoor>> openSim(const SimState& state,
     if (!errors) return errors.error();
     Result<sim::Placement> placement = makePlacement(state, store);
     if (!placement) return placement.error();
-    auto door = std::make_unique<sim::InProcessDoor>(sim::DeviceConfig{
-        .serial = state.serial,
-        .seed = state.seed,
-        .bootCount = 1,
-        .errors = *errors,
-        .camera = cameraUsb == 3 ? sim::CameraKind::Usb3 : sim::CameraKind::Usb2});
+    auto door = std::make_unique<sim::InProcessDoor>(
+        sim::DeviceConfig{.serial = state.serial,
+                          .seed = state.seed,
+                          .bootCount = 1,
+                          .errors = *errors,
+                          .camera = cameraUsb == 3 ? sim::CameraKind::Usb3 : sim::CameraKind::Usb2,
+                          .ledDrift = state.systematic == "none" ? 0 : kLedDrift});
     door->device().place(std::move(*placement));
     return door;
 }

@@ -1,6 +1,10 @@
 #pragma once
 // The simulated rig of a store: what it is and what lies under it is kept in sim.json, so that it
 // is still there when the daemon comes back, as a rig on a table would be.
+//
+// Its systematic errors are those of the references and the drift of the LEDs: with "none" there
+// are neither, with "random" and "stratum:K" the LEDs drift by 0.2 % (standard size), as the rig
+// profiles say.
 
 #include <cstdint>
 #include <memory>
@@ -14,7 +18,7 @@ namespace gonio::daemon {
 struct SimState {
     std::string serial = "SIM-0001";
     std::uint64_t seed = 1;
-    std::string systematic = "random";  ///< errors of the references: none, random, stratum:K
+    std::string systematic = "random";  ///< errors: none, random, stratum:K
     std::string placed = "nothing";     ///< nothing, black, white, mirror, or F
     sim::Wedge wedge;
 };

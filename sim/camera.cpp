@@ -10,11 +10,11 @@ constexpr double kFullLevel = 65535;
 
 bool isLit(std::uint16_t level) { return level != 0; }
 
-/// All bands at their levels together.
-Image<float> added(const RateImages& images, const std::array<std::uint16_t, 3>& levels) {
+/// All bands together, each so much of its full light.
+Image<float> added(const RateImages& images, const LedBands& light) {
     Image<float> sum(images[0].size());
     for (std::size_t c = 0; c < 3; ++c) {
-        const auto share = static_cast<float>(levels[c] / kFullLevel);
+        const auto share = static_cast<float>(light.value[c]);
         for (std::size_t i = 0; i < sum.pixels().size(); ++i) {
             sum.pixels()[i] += share * images[c].pixels()[i];
         }
@@ -46,20 +46,25 @@ const RateImages& Camera::rates(int led, const View& view) {
         .first->second;
 }
 
-Image<std::uint16_t> Camera::expose(const Settings& s, const Format& format, const NoiseKey& key) {
+Image<std::uint16_t> Camera::expose(const Settings& s,
+                                    const LedBands& output,
+                                    const Format& format,
+                                    const NoiseKey& key) {
     const auto expose = [&](const Image<float>* rate, double level) {
         return sensor_.expose(
             rate, level, grantedExposure(s.exposureUs), format.view, key, format.binning);
     };
     if (s.led < 0) return expose(nullptr, 1);
     const RateImages& images = rates(s.led, format.view);
+    LedBands light;
+    for (Band b : kBands) light[b] = s.levels[index(b)] / kFullLevel * output[b];
     // One band is lit at a time in a measurement; several together add their light.
     if (std::count_if(s.levels.begin(), s.levels.end(), isLit) == 1) {
         const auto lit = std::find_if(s.levels.begin(), s.levels.end(), isLit);
         const auto band = static_cast<std::size_t>(lit - s.levels.begin());
-        return expose(&images[band], *lit / kFullLevel);
+        return expose(&images[band], light.value[band]);
     }
-    const Image<float> sum = added(images, s.levels);
+    const Image<float> sum = added(images, light);
     return expose(&sum, 1);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
-// The camera over the stage: what an exposure of these settings shows of what is placed. The light
-// of an LED on a placement is worked out once for each view, at the first exposure that needs it.
+// The camera over the stage: what an exposure of these settings shows of what is placed, with LEDs
+// whose output is so much of nominal. The light of an LED on a placement is worked out once for
+// each view, at the first exposure that needs it.
 
 #include <cstdint>
 #include <map>
@@ -21,6 +22,7 @@ public:
 
     void place(Placement placement);
     [[nodiscard]] Image<std::uint16_t> expose(const Settings& settings,
+                                              const LedBands& output,
                                               const Format& format,
                                               const NoiseKey& key);
 

@@ -1,6 +1,7 @@
 #include "sim/device.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "driver/protocol/crc.h"
 #include "driver/protocol/pixels.h"
@@ -23,6 +24,7 @@ std::uint64_t microseconds(Nanoseconds t) { return static_cast<std::uint64_t>(t.
 Device::Device(DeviceConfig config)
     : config_(std::move(config)),
       camera_(config_.serial, config_.errors, config_.sensorCelsius),
+      drift_(config_.seed, config_.ledDrift),
       bootId_(static_cast<std::uint32_t>(mixed(config_.seed, config_.bootCount))) {
     raise(event::kBoot, bootId_, 0);
 }
@@ -123,6 +125,7 @@ void Device::linkLost() {
 
 void Device::goDark() {
     current_.darken();
+    unsettled_ = false;
     for (auto& [frame, settings] : due_) settings.darken();
 }
 
@@ -147,11 +150,7 @@ void Device::abort(std::uint16_t reason) {
 
 void Device::applyDueSettings() {
     while (!due_.empty() && due_.front().first <= nextFrame_) {
-        const Settings& wanted = due_.front().second;
-        if (wanted.led >= 0 && (wanted.led != current_.led || wanted.levels != current_.levels)) {
-            settledAt_ = now_ + std::chrono::milliseconds(kSettleMs);
-        }
-        current_ = wanted;
+        takeEffect(due_.front().second);
         due_.pop_front();
     }
 }
@@ -165,6 +164,7 @@ void Device::beginExposureIfDue() {
     Exposing exposing;
     exposing.settings = current_;
     exposing.number = nextFrame_++;
+    exposing.settling = std::exchange(unsettled_, false) ? kSettling : Nanoseconds(0);
     exposing.start = std::max({now_, earliestStart_, settledAt_});
     exposing.end = exposing.start + grantedExposure(current_.exposureUs);
     exposing_ = exposing;
@@ -182,17 +182,29 @@ void Device::finishExposure() {
     ++capture_->next;
     if (capture_->next >= capture_->frames) {
         capture_.reset();
-        for (const auto& [frame, settings] : due_) current_ = settings;
+        for (const auto& [frame, settings] : due_) takeEffect(settings);
         due_.clear();
         pushStatus();
     }
+}
+
+/// With the output that the LED has halfway through. An exposure that was aborted is not on the
+/// photometric clock: when that happens is the host's doing.
+Image<std::uint16_t> Device::exposed(const Exposing& done, const NoiseKey& key) {
+    const Settings& settings = done.settings;
+    const Nanoseconds exposure = grantedExposure(settings.exposureUs);
+    drift_.run(settings, done.settling + exposure / 2);
+    const LedBands output =
+        settings.led < 0 ? LedBands::all(1) : drift_.output(settings.led, key.planStep);
+    drift_.run(settings, exposure - exposure / 2);
+    return camera_.expose(settings, output, format_, key);
 }
 
 void Device::queueFrame(const Exposing& done, int index) {
     const NoiseKey key{.seed = config_.seed,
                        .planStep = capture_->id >> 16,
                        .frameIndex = static_cast<std::uint64_t>(index)};
-    const Image<std::uint16_t> image = camera_.expose(done.settings, format_, key);
+    const Image<std::uint16_t> image = exposed(done, key);
     const std::vector<std::uint8_t> bytes = packPixels(image, format_.format);
     Trailer trailer = trailerOf(done, image, mayLight());
     trailer.frameBytes = static_cast<std::uint32_t>(bytes.size());

@@ -17,6 +17,7 @@
 #include "sim/claim.h"
 #include "sim/exposing.h"
 #include "sim/frame_queue.h"
+#include "sim/led_drift.h"
 #include "sim/notices.h"
 #include "sim/reference_errors.h"
 #include "sim/stage.h"
@@ -30,6 +31,7 @@ struct DeviceConfig {
     ReferenceErrors errors;
     double sensorCelsius = 25;  ///< dark current doubles each 7 K
     CameraKind camera = CameraKind::Usb2;
+    double ledDrift = 0;  ///< relative standard size, e.g. 0.002; 0: none at all
 };
 
 class Device {
@@ -81,6 +83,7 @@ private:
     std::uint16_t clearFault();
     void reboot();
     [[nodiscard]] std::uint32_t applySettings(const Settings& wanted);
+    void takeEffect(const Settings& wanted);
     [[nodiscard]] Settings settingsToCome() const;
 
     // Reports (device_reports.cpp).
@@ -105,6 +108,7 @@ private:
     void applyDueSettings();
     void finishExposure();
     void queueFrame(const Exposing& exposing, int index);
+    [[nodiscard]] Image<std::uint16_t> exposed(const Exposing& done, const NoiseKey& key);
     void abort(std::uint16_t reason);
     void goDark();
     [[nodiscard]] bool freeRunning() const { return capture_ && !capture_->software; }
@@ -112,6 +116,7 @@ private:
 
     DeviceConfig config_;
     Camera camera_;
+    LedDrift drift_;
 
     Nanoseconds now_{0};
     std::uint32_t bootId_;
@@ -128,6 +133,7 @@ private:
     std::optional<Exposing> exposing_;
     std::uint32_t nextFrame_ = 1;
     Nanoseconds settledAt_{0};
+    bool unsettled_ = false;  // the lit LED has not settled before an exposure yet
     Nanoseconds earliestStart_{0};
 
     FrameQueue frames_;

@@ -89,10 +89,18 @@ std::uint32_t Device::applySettings(const Settings& wanted) {
         due_.emplace_back(effective, wanted);
         return effective;
     }
-    const bool ledChanged = wanted.led != current_.led || wanted.levels != current_.levels;
-    current_ = wanted;
-    if (ledChanged && wanted.led >= 0) settledAt_ = now_ + std::chrono::milliseconds(kSettleMs);
+    takeEffect(wanted);
     return nextFrame_;
+}
+
+void Device::takeEffect(const Settings& wanted) {
+    const bool lit = wanted.led >= 0;
+    if (lit && (wanted.led != current_.led || wanted.levels != current_.levels)) {
+        settledAt_ = now_ + kSettling;
+        unsettled_ = true;
+    }
+    unsettled_ = unsettled_ && lit;
+    current_ = wanted;
 }
 
 std::uint16_t Device::setLed(const SetLed& args, Arguments& result) {

@@ -34,6 +34,7 @@ struct Format {
 struct Exposing {
     std::uint32_t number = 0;
     Settings settings;
+    Nanoseconds settling{0};  ///< for the LED that was changed before it
     Nanoseconds start{0}, end{0};
 };
 

@@ -4,10 +4,12 @@
 // level, for f cos(theta_o) = 1 / sr: 4.5e7 for green (a photon budget, not a vendor's figure).
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 
 #include "proc/core/bands.h"
 #include "proc/core/direction.h"
+#include "proc/core/units.h"
 
 namespace gonio::sim {
 
@@ -15,6 +17,7 @@ inline constexpr int kLeds = 4;
 inline constexpr std::array<double, kLeds> kLedDegrees{0, 20, 40, 60};
 inline constexpr std::array<std::uint16_t, 3> kFullCurrent{3500, 3500, 3500};  ///< 0.1 mA
 inline constexpr std::uint8_t kSettleMs = 5;
+inline constexpr Nanoseconds kSettling = std::chrono::milliseconds(kSettleMs);
 
 [[nodiscard]] Direction ledDirection(int led);
 [[nodiscard]] double ledRate(int led, Band band);

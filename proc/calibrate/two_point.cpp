@@ -23,6 +23,7 @@ enum Component : std::size_t {
     WhitePerDirection,
     BlackCommon,
     Geometry,
+    LedDrift,
     ComponentCount
 };
 using Contributions = std::array<double, ComponentCount>;
@@ -40,6 +41,7 @@ constexpr std::array<ComponentKind, ComponentCount> kComponents{{
     {"white reference, per direction", 'B', Correlation::PerCell},
     {"black reference", 'B', Correlation::Common},
     {"direction of the cell (lens map)", 'A', Correlation::PerState},
+    {"LED drift", 'B', Correlation::PerState},
 }};
 
 double quadrature(const Contributions& u, std::size_t first, std::size_t behind) {
@@ -94,7 +96,7 @@ Calibrated calibrate(const CellSignal& sample,
                      const References& references,
                      const Direction& wi,
                      Band band,
-                     const AngleUncertainty& uAngle) {
+                     const RigUncertainty& rig) {
     const CellSignal& white = references.whiteSignal;
     const CellSignal& black = references.blackSignal;
     assert(sample.size() == CellGrid::count() && white.size() == sample.size() &&
@@ -131,6 +133,10 @@ Calibrated calibrate(const CellSignal& sample,
             u[WhiteCommon] = std::abs(q * fw) * references.white.certificate().uCommon;
             u[WhitePerDirection] = std::abs(q * fw) * references.white.certificate().uPerDirection;
             u[BlackCommon] = std::abs((1 - q) * fb) * references.black.certificate().uCommon;
+            u[LedDrift] =
+                rig.ledDrift * std::abs(gain) *
+                std::hypot(
+                    sample.signal[cell], q * white.signal[cell], (1 - q) * black.signal[cell]);
         }
     });
     // The slope needs the neighbours' f.
@@ -138,7 +144,7 @@ Calibrated calibrate(const CellSignal& sample,
         for (std::size_t cell = cells.begin; cell < cells.end; ++cell) {
             if (!out.present(cell)) continue;
             Contributions& u = contributions[cell];
-            u[Geometry] = slope(out.f, out.flags, cell) * uAngle(CellGrid::centre(cell)).value();
+            u[Geometry] = slope(out.f, out.flags, cell) * rig.angle(CellGrid::centre(cell)).value();
             out.uRandom[cell] = quadrature(u, SampleNoise, WhiteCommon);
             out.uSystematic[cell] = quadrature(u, WhiteCommon, ComponentCount);
             if (std::abs(out.f[cell]) < 2 * out.uRandom[cell]) {

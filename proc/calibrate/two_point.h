@@ -3,7 +3,11 @@
 // white and black, and f_w, f_b what the certificates say:
 //     f = f_b + (f_w - f_b) q,   q = (S - S_b) / (S_w - S_b).
 // Uncertainties are first order. Random: the noise of the three signals. Systematic: white, common
-// and per direction, by q f_w; black by (1 - q) f_b; the lens map's angle by the local slope of f.
+// and per direction, by q f_w; black by (1 - q) f_b; the lens map's angle by the local slope of f;
+// and the drift of the LED. Each of the three captures was lit with a relative error of its own,
+// independent, of the size d that the rig is known for, and a signal is as wrong as its light:
+//     u = d |df/dS| sqrt(S^2 + (q S_w)^2 + ((1 - q) S_b)^2),
+// sqrt(2) d f where sample and white are far brighter than black; all cells of a state share it.
 //
 // A cell that is missing in any of the three is missing here, with the flags of all. Where white is
 // not brighter than black by 5 sigma the cell is missing: nothing can be said there. Negative f
@@ -29,6 +33,12 @@ struct References {
 /// Standard uncertainty of the direction of a cell, per axis.
 using AngleUncertainty = std::function<Radians(const Direction&)>;
 
+/// What the rig adds to the uncertainty by itself.
+struct RigUncertainty {
+    const AngleUncertainty& angle;
+    double ledDrift = 0;  ///< d: relative standard size, k = 1
+};
+
 struct Calibrated {
     CellSamples samples;
     Budget budget;
@@ -39,6 +49,6 @@ struct Calibrated {
                                    const References& references,
                                    const Direction& wi,
                                    Band band,
-                                   const AngleUncertainty& uAngle);
+                                   const RigUncertainty& rig);
 
 }  // namespace gonio::proc

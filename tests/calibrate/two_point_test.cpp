@@ -37,12 +37,12 @@ struct Tiles {
     CellSignal whiteSignal = signalOf([](const Direction&) { return 0.98 / kPi; });
     CellSignal blackSignal = signalOf([](const Direction&) { return 0.001 / kPi; });
 
-    [[nodiscard]] Calibrated operator()(const CellSignal& sample, Radians uAngle = 0_deg) const {
-        return calibrate(sample,
-                         {whiteSignal, blackSignal, white, black},
-                         kLight,
-                         Band::G,
-                         [=](const Direction&) { return uAngle; });
+    [[nodiscard]] Calibrated operator()(const CellSignal& sample,
+                                        Radians uAngle = 0_deg,
+                                        double ledDrift = 0) const {
+        const AngleUncertainty angle = [=](const Direction&) { return uAngle; };
+        return calibrate(
+            sample, {whiteSignal, blackSignal, white, black}, kLight, Band::G, {angle, ledDrift});
     }
 };
 
@@ -112,6 +112,57 @@ TEST(TwoPoint, SystematicUncertaintyIsWhatATileThatLiesDoes) {
     }
 }
 
+/// All signals of a capture whose LED gave so much of its light; the stray light is the LED's too.
+CellSignal scaled(CellSignal signal, double output) {
+    for (double& s : signal.signal) s *= output;
+    return signal;
+}
+
+TEST(TwoPoint, LedDriftIsWhatThreeCapturesOfAnUnsteadyLedDo) {
+    constexpr double kDrift = 0.002;
+    const Tiles tiles;
+    for (const double level : {1.0, 1e-3}) {  // as bright as white, and nearly black
+        const CellSignal sample =
+            signalOf([=](const Direction& wo) { return level * slanted(wo); });
+        const CellSamples right = tiles(sample).samples;
+        const CellSamples budgeted = tiles(sample, 0_deg, kDrift).samples;
+        Tiles unsteadyWhite = tiles, unsteadyBlack = tiles;
+        unsteadyWhite.whiteSignal = scaled(tiles.whiteSignal, 1 + kDrift);
+        unsteadyBlack.blackSignal = scaled(tiles.blackSignal, 1 + kDrift);
+        const CellSamples one = tiles(scaled(sample, 1 + kDrift)).samples;
+        const CellSamples two = unsteadyWhite(sample).samples;
+        const CellSamples three = unsteadyBlack(sample).samples;
+        for (const double theta : {5.5, 40.5, 70.5}) {
+            const std::size_t cell =
+                *CellGrid::cellAt(Direction::fromSpherical(Radians::fromDegrees(theta), 30_deg));
+            const double all = std::hypot(one.f[cell] - right.f[cell],
+                                          two.f[cell] - right.f[cell],
+                                          three.f[cell] - right.f[cell]);
+            const double added = std::sqrt(std::pow(budgeted.uSystematic[cell], 2) -
+                                           std::pow(right.uSystematic[cell], 2));
+            EXPECT_NEAR(added / all, 1, 0.01) << level << ' ' << theta;  // first order: 0.2 %
+        }
+    }
+}
+
+TEST(TwoPoint, LedDriftCountsTwiceForBrightSamplesAndIsNotRandom) {
+    constexpr double kDrift = 0.002;
+    const Tiles tiles;
+    const CellSignal sample = signalOf([](const Direction&) { return 0.3; });
+    const Calibrated with = tiles(sample, 0_deg, kDrift);
+    const Calibrated without = tiles(sample);
+    const BudgetComponent& drift = with.budget.back();
+    EXPECT_EQ(drift.name, "LED drift");
+    EXPECT_EQ(drift.type, 'B');
+    EXPECT_EQ(drift.correlation, Correlation::PerState);
+    // Black and stray light are 1/500 of it.
+    EXPECT_NEAR(drift.medianRelative / (std::sqrt(2) * kDrift), 1, 0.005);
+    EXPECT_EQ(without.budget.back().medianRelative, 0);
+    const std::size_t cell = 5000;
+    EXPECT_EQ(with.samples.uRandom[cell], without.samples.uRandom[cell]);
+    EXPECT_EQ(with.samples.f[cell], without.samples.f[cell]);
+}
+
 TEST(TwoPoint, GeometryIsSlopeTimesAngle) {
     const Tiles tiles;
     const Radians u = 0.5_deg;
@@ -156,8 +207,8 @@ TEST(TwoPoint, AMissingReferenceCellIsMissing) {
 
 TEST(TwoPoint, BudgetNamesEveryComponent) {
     const Tiles tiles;
-    const Budget budget = tiles(signalOf(slanted), 0.1_deg).budget;
-    ASSERT_EQ(budget.size(), 7U);
+    const Budget budget = tiles(signalOf(slanted), 0.1_deg, 0.002).budget;
+    ASSERT_EQ(budget.size(), 8U);
     for (const BudgetComponent& component : budget) {
         EXPECT_TRUE(component.type == 'A' || component.type == 'B');
         EXPECT_FALSE(name(component.correlation).empty());

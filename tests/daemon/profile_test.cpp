@@ -20,6 +20,8 @@ electrons_per_dn = 2.6
 read_noise_electrons = 2.4
 dark_electrons_per_second = 3
 full_scale_dn = 4095
+[led]
+drift_relative = 0.002
 [bracket]
 exposures_us = [320, 20, 80]
 dim_levels = [0.0025, 0.05]
@@ -53,6 +55,7 @@ TEST_F(Profile, SortsItsLadders) {
               (std::vector{Microseconds(20), Microseconds(80), Microseconds(320)}));
     EXPECT_EQ(profile->dimLevels, (std::vector{0.05, 0.0025}));
     EXPECT_EQ(profile->cameraUsb, 3);
+    EXPECT_EQ(profile->ledDrift, 0.002);
     EXPECT_EQ(profile->noise.electronsPerDn, 2.6);
     EXPECT_EQ(profile->blackReflectance, 0.001);
 }
@@ -74,6 +77,7 @@ TEST_F(Profile, EveryKeyIsAskedForByName) {
                                   "read_noise_electrons",
                                   "dark_electrons_per_second",
                                   "full_scale_dn",
+                                  "drift_relative",
                                   "exposures_us",
                                   "dim_levels",
                                   "white",
@@ -106,6 +110,21 @@ TEST_F(Profile, ACameraSpeaksUsb2OrUsb3) {
         const auto profile = read(text);
         ASSERT_FALSE(profile) << bad;
         EXPECT_NE(profile.error().message.find("'camera.usb': wanted 2 or 3"), std::string::npos)
+            << profile.error().message;
+    }
+}
+
+TEST_F(Profile, LedDriftIsAFractionAndMayBeNone) {
+    const auto with = [&](const std::string& value) {
+        std::string text = without("drift_relative");
+        text.insert(text.find("[led]\n") + 6, "drift_relative = " + value + "\n");
+        return read(text);
+    };
+    EXPECT_EQ(with("0.0")->ledDrift, 0);
+    for (const std::string bad : {"-0.001", "1.0", "nan", "\"0.002\""}) {
+        const auto profile = with(bad);
+        ASSERT_FALSE(profile) << bad;
+        EXPECT_NE(profile.error().message.find("'led.drift_relative'"), std::string::npos)
             << profile.error().message;
     }
 }

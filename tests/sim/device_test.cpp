@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
+#include "driver/protocol/chunk.h"
+
 namespace gonio::sim {
 namespace {
 
@@ -166,6 +170,45 @@ TEST(Device, EventsAreKeptForReadingAgain) {
     ASSERT_EQ(rest->events.size(), 2U);
     EXPECT_EQ(rest->events[0].code, event::kInterlockOpened);
     EXPECT_EQ(rest->events[1].code, event::kInterlockClosed);
+}
+
+/// When the exposures of all waiting frames began, in microseconds since boot.
+std::vector<std::uint64_t> startsOf(Device& device) {
+    std::vector<std::uint64_t> starts;
+    while (const auto chunk = device.takeBulk()) {
+        const auto decoded = decodeChunk(*chunk);
+        if (!decoded || decoded->header.type != ChunkType::Leader) continue;
+        starts.push_back(decodeLeader(decoded->payload)->exposureStartUs);
+    }
+    return starts;
+}
+
+TEST(Device, AnLedThatTakesEffectAtTheEndOfACaptureSettlesBeforeTheNext) {
+    Device device({});
+    claim(device);
+    std::uint16_t sequence = 0;
+    const auto send = [&](Op op, const Arguments& arguments) {
+        const Ack ack =
+            answerTo(device, {.sequence = ++sequence, .op = op, .arguments = arguments});
+        EXPECT_EQ(ack.status, status::kOk);
+    };
+    const auto light = [&](std::uint8_t led) {
+        send(Op::SetLed, encode(SetLed{.led = led, .levels = {9, 0, 0}}));
+    };
+    send(Op::SetFormat, encode(SetFormat{.width = 8, .height = 8}));
+    send(Op::SetExposure, encode(SetExposure{.exposureUs = 200'000}));
+    light(1);
+    send(Op::Arm, encode(Arm{.captureId = 1}));
+    device.advanceTo(std::chrono::milliseconds(100));
+    light(2);  // one is exposing: it waits for the frames to come
+    device.advanceTo(std::chrono::milliseconds(206));
+    send(Op::Arm, encode(Arm{.captureId = 2}));
+    device.advanceTo(std::chrono::seconds(1));
+    const auto starts = startsOf(device);
+    ASSERT_EQ(starts.size(), 2U);
+    EXPECT_NEAR(static_cast<double>(starts[0]), 5'000, 1);
+    const double firstEnds = 5'000 + static_cast<double>(grantedExposure(200'000).count()) * 1e-3;
+    EXPECT_NEAR(static_cast<double>(starts[1]), firstEnds + 5'000, 1);
 }
 
 TEST(Device, AResetStreamHoldsNothing) {

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
 #include <memory>
 #include <random>
+#include <vector>
 
 #include "driver/rig.h"
 #include "proc/models/spec.h"
@@ -82,6 +84,47 @@ TEST(RigOnSim, LimitsTellTheFramePeriodOfTheCamera) {
     };
     EXPECT_EQ(periodOf(sim::CameraKind::Usb2), Microseconds(40'000));
     EXPECT_EQ(periodOf(sim::CameraKind::Usb3), Microseconds(16'667));
+}
+
+/// A grey, lit green by LED 1 three times, after a pause; the means of the frames.
+std::vector<double> meansOf(double ledDrift, Nanoseconds pause) {
+    sim::InProcessDoor door({.errors = {}, .ledDrift = ledDrift});
+    door.device().place(lambert());
+    auto rig = driver::Rig::open(door, kSession);
+    EXPECT_TRUE(rig);
+    EXPECT_TRUE(rig->configure({.x = 384, .y = 256, .size = {512, 512}, .binning = 1}));
+    std::vector<double> means;
+    for (std::uint64_t step : {70U, 200U, 330U}) {
+        door.device().advanceTo(door.device().now() + pause);
+        EXPECT_TRUE(rig->keepAlive());
+        const auto capture = rig->capture({.planStep = step,
+                                           .led = 1,
+                                           .levels = LedLevels::only(Band::G, 65535),
+                                           .exposure = Microseconds(1000),
+                                           .frames = 1});
+        EXPECT_TRUE(capture) << capture.error().message;
+        double sum = 0;
+        for (std::uint16_t dn : capture->front().pixels.pixels()) sum += dn - sim::kBlackLevel;
+        means.push_back(sum / 512 / 512);
+    }
+    return means;
+}
+
+TEST(RigOnSim, LedsDriftInLightAndNotInCurrent) {
+    // A frame whose current left its tolerance would not be valid, and the capture would fail.
+    const std::vector<double> nominal = meansOf(0, {});
+    const std::vector<double> drifting = meansOf(0.01, {});
+    const sim::LedDrift drift(sim::DeviceConfig{}.seed, 0.01);
+    for (std::size_t i = 0; i < nominal.size(); ++i) {
+        const double wander = drift.wander(1, Band::G, std::array{70U, 200U, 330U}[i]);
+        // Half a per cent of the size for the heat of 18 ms; a mean of 262,144 pixels is known to
+        // 3e-5, and its noise is the same in both.
+        EXPECT_NEAR(drifting[i] / nominal[i], 1 + 0.01 * wander, 1e-4) << i;
+    }
+}
+
+TEST(RigOnSim, DriftDoesNotDependOnTheWallClock) {
+    EXPECT_EQ(meansOf(0.01, {}), meansOf(0.01, std::chrono::seconds(1)));
 }
 
 TEST(RigOnSim, DarkFramesShowTheBlackLevel) {

@@ -1,0 +1,46 @@
+#pragma once
+// How the light of the LEDs departs from nominal although their current is constant. Of an LED and
+// band, relative to nominal,
+//     output = 1 + s (z - d h),   s: the size, a relative standard deviation.
+// h is the heat of its own light: h' = (level - h) / 2 s, 0 when cold, the drive level when warm. d
+// says what heat costs: 2 in red (AlInGaP loses 0.5 to 1 % per kelvin), 0.5 in green and blue
+// (InGaN, 0.1 to 0.3 %). z wanders: drawn from the seed, a standard normal at any plan step,
+// changing by about a tenth over a bracket and independent after 128 steps. Plan steps never come
+// again, so that no two placements share their z, however often the rig was switched on between.
+// Size 0: the output is 1 exactly.
+//
+// Heat comes and goes with the photometric clock, which exposures and settling advance and nothing
+// else: never the wall clock, so that frames do not depend on how fast the host is. An LED cools
+// while others are lit and in dark frames; a pause between captures cools nothing.
+//
+// The drive current that the rig measures does not show any of it.
+
+#include <array>
+#include <cstdint>
+
+#include "proc/core/bands.h"
+#include "proc/core/units.h"
+#include "sim/exposing.h"
+#include "sim/light.h"
+
+namespace gonio::sim {
+
+class LedDrift {
+public:
+    LedDrift(std::uint64_t seed, double size) : seed_(seed), size_(size) {}
+
+    /// The photometric clock runs for so long with this light.
+    void run(const Settings& settings, Nanoseconds time);
+    /// Of the bands of an LED as warm as it is now, in a capture of this plan step.
+    [[nodiscard]] LedBands output(int led, std::uint64_t planStep) const;
+
+    [[nodiscard]] double heat(int led, Band band) const;
+    [[nodiscard]] double wander(int led, Band band, std::uint64_t planStep) const;
+
+private:
+    std::uint64_t seed_;
+    double size_;
+    std::array<LedBands, kLeds> heat_{};
+};
+
+}  // namespace gonio::sim
