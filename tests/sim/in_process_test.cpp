@@ -66,5 +66,28 @@ TEST(InProcessDoor, StatusComesTenTimesASecond) {
     EXPECT_NEAR(statuses, 20, 1);
 }
 
+/// Nanoseconds that a byte of a waiting chunk takes.
+double nanosecondsPerByte(CameraKind camera) {
+    InProcessDoor door({.errors = {}, .camera = camera});
+    EXPECT_TRUE(door.setFeature(driver::encode(driver::SessionSet{.sessionId = 7})));
+    EXPECT_TRUE(door.write(
+        driver::encode(driver::Command{.sessionLow = 7,
+                                       .sequence = 1,
+                                       .op = driver::Op::Arm,
+                                       .arguments = driver::encode(driver::Arm{.captureId = 1})})));
+    door.device().advanceTo(100ms);
+    EXPECT_TRUE(door.readBulk(0ns).value());  // the leader
+    const Nanoseconds begin = door.clock().now();
+    const auto data = door.readBulk(0ns).value();
+    if (!data) return 0;
+    return static_cast<double>((door.clock().now() - begin).count()) /
+           static_cast<double>(data->size());
+}
+
+TEST(InProcessDoor, BulkCostsWhatTheCamerasUsbCarries) {
+    EXPECT_NEAR(nanosecondsPerByte(CameraKind::Usb2), 25, 1e-3);   // 40 MB/s
+    EXPECT_NEAR(nanosecondsPerByte(CameraKind::Usb3), 2.5, 1e-3);  // 400 MB/s
+}
+
 }  // namespace
 }  // namespace gonio::sim
