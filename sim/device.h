@@ -62,6 +62,8 @@ public:
     void place(Placement placement);
     void setInterlock(std::uint8_t bits);
     [[nodiscard]] const driver::Stats& stats() const { return stats_; }
+    /// An LED shines at this moment.
+    [[nodiscard]] bool lit() const { return current_.led >= 0; }
 
 private:
     struct Capture {

@@ -1,7 +1,8 @@
 # gonio_library(NAME SOURCES ... [PUBLIC libs] [PRIVATE libs]): the one target of a folder.
 # gonio_test(NAME LABEL label SOURCES ... LIBS ... [TIMEOUT seconds] [WRAPPER command ...]): a
 # GoogleTest program with one label. A label `run` takes all cores: its tests run alone.
-# gonio_program_test(...): likewise, for tests that run the built programs (GONIO_PROGRAM, GONIO_DAEMON).
+# gonio_program_test(...): likewise, for tests that run the built programs; uses_programs(NAME) tells a
+# test where they are (GONIO_PROGRAM, GONIO_DAEMON).
 
 add_library(gonio_options INTERFACE)
 target_compile_options(gonio_options INTERFACE
@@ -55,9 +56,13 @@ function(gonio_test name)
         PROPERTIES LABELS "${TEST_LABEL}" TIMEOUT ${TEST_TIMEOUT} RUN_SERIAL ${alone})
 endfunction()
 
-function(gonio_program_test name)
-    gonio_test(${name} ${ARGN})
+function(uses_programs name)
     target_compile_definitions(${name} PRIVATE
         GONIO_PROGRAM="$<TARGET_FILE:gonio>" GONIO_DAEMON="$<TARGET_FILE:goniod>")
     add_dependencies(${name} gonio goniod)
+endfunction()
+
+function(gonio_program_test name)
+    gonio_test(${name} ${ARGN})
+    uses_programs(${name})
 endfunction()

@@ -1,5 +1,5 @@
-// goniod and gonio as they are shipped, on a rig on USB: the real libraries in the daemon's process,
-// the simulated rig behind the mocked bus in this one.
+// goniod and gonio as they are shipped, on a rig on USB: the real libraries in the daemon's
+// process, the simulated rig behind the mocked bus in this one.
 
 #include <fstream>
 #include <iostream>
@@ -9,6 +9,8 @@
 #include "daemon/sim_bench.h"
 #include "tests/daemon/cli/running_daemon.h"
 #include "tests/device/usb_rig_fixture.h"
+
+#include <httplib.h>  // after Eigen: its macros break it
 
 namespace gonio::device_test {
 namespace {
@@ -25,15 +27,14 @@ constexpr auto kPatience = 30s;
 /// A rig, and the person who puts things under it.
 class Lab : public testing::Test {
 protected:
-    void SetUp() override { place("nothing"); }
+    void SetUp() override { place("mirror"); }
     void place(const std::string& what, const sim::Wedge& wedge = {}) {
         auto store = daemon::Store::open(gonio / "store");
         ASSERT_TRUE(store) << store.error().message;
         auto placement = daemon::makePlacement(
             {.serial = kSerial, .seed = kSeed, .placed = what, .wedge = wedge}, *store);
         ASSERT_TRUE(placement) << placement.error().message;
-        rig.live().with(
-            [&](sim::UsbDevice& usb) { usb.device().place(std::move(*placement)); });
+        rig.live().with([&](sim::UsbDevice& usb) { usb.device().place(std::move(*placement)); });
     }
     Json ask(std::vector<std::string> arguments) const {
         arguments.insert(arguments.begin(), "--json");
@@ -58,8 +59,7 @@ protected:
         await(state, [&](const Json& now) { return now["rig"]["state"] == state; });
     }
     [[nodiscard]] pid_t begin(std::vector<std::string> arguments) const {
-        arguments.insert(arguments.begin(),
-                         {GONIO_PROGRAM, "--store", (gonio / "store").string()});
+        arguments.insert(arguments.begin(), {GONIO_PROGRAM, "--store", (gonio / "store").string()});
         return test::spawnProcess(arguments, gonio / "client.out", gonio / "client.err");
     }
     [[nodiscard]] int end(pid_t client) const {
@@ -67,11 +67,18 @@ protected:
         waitpid(client, &code, 0);
         return test::exitCodeOf(code);
     }
-    [[nodiscard]] std::uint32_t lit() {
-        return rig.live().with([](sim::UsbDevice& usb) {
-            const auto report = usb.device().getFeature(0x10);
-            return report ? driver::decodeStatus(*report).ledOn : ~0U;
-        });
+    [[nodiscard]] bool lit() {
+        return rig.live().with([](sim::UsbDevice& usb) { return usb.device().lit(); });
+    }
+    /// Begins a job that no client follows.
+    void post(const std::string& kind) const {
+        httplib::Client client((gonio / "store/goniod.sock").string(), 80);
+        client.set_address_family(AF_UNIX);
+        client.set_default_headers({{"Host", "localhost"}});
+        const auto answer =
+            client.Post("/api/v1/jobs", R"({"kind":")" + kind + R"("})", "application/json");
+        ASSERT_TRUE(answer);
+        EXPECT_EQ(answer->status, 202) << answer->body;
     }
 
     test::Program gonio;
@@ -107,8 +114,16 @@ std::string inProcess() {
         const test::Ran ran = gonio(arguments);
         EXPECT_EQ(ran.exitCode, 0) << ran.err;
     };
-    run({"sim", "place", "mirror", "--serial", kSerial, "--seed", std::to_string(kSeed),
-         "--systematic", "none", "-q"});
+    run({"sim",
+         "place",
+         "mirror",
+         "--serial",
+         kSerial,
+         "--seed",
+         std::to_string(kSeed),
+         "--systematic",
+         "none",
+         "-q"});
     run({"calibrate", "mirror", "-q"});
     for (const std::string tile : {"black", "white"}) {
         run({"sim", "place", tile, "-q"});
@@ -125,13 +140,11 @@ TEST_F(Lab, MeasuresOnUsbWhatItMeasuresInProcess) {
     EXPECT_EQ(ask({"rigs"})["rigs"][0]["serial"], kSerial);
     const double idle = mostMebibytes(daemon.pid());
 
-    const pid_t mirror = begin({"--yes", "calibrate", "mirror"});
-    (void)mirror;
-    ::kill(mirror, SIGKILL);  // the person works at another terminal
-    (void)end(mirror);
+    post("calibrate-mirror");
     for (const proc::Wedge& wedge : proc::mirrorWedges()) {
-        await("a wish for a mirror",
-              [](const Json& now) { return now["job"].is_object() && now["job"]["wanted"].is_string(); });
+        await("a wish for a mirror", [](const Json& now) {
+            return now["job"].is_object() && now["job"]["wanted"].is_string();
+        });
         place("mirror", {wedge.aboutX, wedge.aboutY});
         ask({"jobs", "proceed"});
     }
@@ -143,12 +156,12 @@ TEST_F(Lab, MeasuresOnUsbWhatItMeasuresInProcess) {
     place(kSample);
     const Json measured = ask({"measure", "x", "--effort", "draft"});
     std::cout << "goniod: " << idle << " MiB idle, " << mostMebibytes(daemon.pid())
-              << " MiB at most; a draft measurement " << measured["rig_seconds"] << " s on the rig, "
-              << measured["compute_seconds"] << " s computing\n";
+              << " MiB at most; a draft measurement " << measured["rig_seconds"]
+              << " s on the rig, " << measured["compute_seconds"] << " s computing\n";
     EXPECT_LE(mostMebibytes(daemon.pid()), 150);
     EXPECT_EQ(csvOf(gonio, "x"), inProcess());
     EXPECT_EQ(daemon.end(), 0) << daemon.log();
-    EXPECT_EQ(lit(), 0U);
+    EXPECT_FALSE(lit());
 }
 
 TEST_F(Lab, UnpluggedInTheMiddleTheJobIsInterruptedAndTheRigIsFoundAgain) {
@@ -166,7 +179,7 @@ TEST_F(Lab, UnpluggedInTheMiddleTheJobIsInterruptedAndTheRigIsFoundAgain) {
     EXPECT_EQ(gonio({"calibrate", "mirror"}).exitCode, 3);
     rig.plug();
     awaitState("idle");
-    EXPECT_EQ(lit(), 0U);
+    EXPECT_FALSE(lit());
 }
 
 TEST_F(Lab, KilledInTheMiddleTheRigGoesDarkAndTheNextDaemonTakesItUp) {
@@ -174,16 +187,16 @@ TEST_F(Lab, KilledInTheMiddleTheRigGoesDarkAndTheNextDaemonTakesItUp) {
     daemon.emplace(gonio, std::vector<std::string>{"--rig", "usb"});
     awaitState("idle");
     const pid_t client = begin({"--yes", "calibrate", "mirror"});
-    await("a lit LED", [&](const Json&) { return lit() != 0; });
+    await("a lit LED", [&](const Json&) { return lit(); });
     daemon->end(SIGKILL);
     EXPECT_EQ(end(client), 3);
     daemon.emplace(gonio, std::vector<std::string>{"--rig", "usb"});
     awaitState("idle");  // by the same claim, before the rig has missed the first one's heartbeat
     const auto begun = std::chrono::steady_clock::now();
-    while (lit() != 0 && std::chrono::steady_clock::now() - begun < 2500ms) {
+    while (lit() && std::chrono::steady_clock::now() - begun < 2500ms) {
         std::this_thread::sleep_for(10ms);
     }
-    EXPECT_EQ(lit(), 0U);
+    EXPECT_FALSE(lit());
     EXPECT_EQ(ask({"jobs"})["jobs"][0]["state"], "interrupted");
 }
 
@@ -191,7 +204,7 @@ TEST_F(Lab, OpenInterlockFailsTheJobAndIsOverWhenItCloses) {
     test::RunningDaemon daemon(gonio, {"--rig", "usb"});
     awaitState("idle");
     const pid_t client = begin({"--yes", "calibrate", "mirror"});
-    await("a lit LED", [&](const Json&) { return lit() != 0; });
+    await("a lit LED", [&](const Json&) { return lit(); });
     rig.live().with([](sim::UsbDevice& usb) { usb.device().setInterlock(0); });
     EXPECT_EQ(end(client), 5) << test::textOf(gonio / "client.err");
     awaitState("fault");

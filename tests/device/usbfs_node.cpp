@@ -71,6 +71,13 @@ void UsbfsNode::pull() {
     waiting_.clear();
 }
 
+/// The transfers of a process that was killed are gone with it, as its memory is.
+void UsbfsNode::firstOpened() {
+    const std::scoped_lock lock(mutex_);
+    forget(waiting_);
+    forget(done_);
+}
+
 gboolean UsbfsNode::onIoctl(UMockdevIoctlBase*, UMockdevIoctlClient* client, UsbfsNode* self) {
     const int error = self->answer(umockdev_ioctl_client_get_request(client),
                                    umockdev_ioctl_client_get_arg(client));

@@ -21,6 +21,9 @@ public:
     ~UsbfsNode() override;
     void pull() override;
 
+protected:
+    void firstOpened() override;
+
 private:
     struct Urb {
         UMockdevIoctlData* data = nullptr;  ///< the caller's struct usbdevfs_urb

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <cstring>
+#include <iostream>
 #include <optional>
 #include <thread>
 
@@ -47,7 +48,11 @@ public:
             std::this_thread::sleep_for(std::chrono::milliseconds(5));
         }
     }
-    ~RunningDaemon() { (void)end(SIGKILL); }
+    ~RunningDaemon() {
+        const std::optional<int> ended = end(SIGKILL);
+        if (!testing::Test::HasFailure()) return;
+        std::cerr << "goniod ended " << ended.value_or(0) << " and said:\n" << log();
+    }
     RunningDaemon(const RunningDaemon&) = delete;
     RunningDaemon& operator=(const RunningDaemon&) = delete;
 
