@@ -9,13 +9,17 @@
 
 namespace gonio::daemon {
 
-/// What `work` answers. The rig stays the calling thread's.
-template <class Work>
-auto alongside(driver::Rig& rig, Work work) {
+/// What `work` answers. The rig stays the calling thread's, which says each time that it is
+/// `alive`.
+template <class Alive, class Work>
+auto alongside(driver::Rig& rig, Alive alive, Work work) {
     constexpr auto kPause = std::chrono::milliseconds(200);
     auto answer = std::async(std::launch::async, std::move(work));
     // A rig that is lost meanwhile is found out by whoever needs it next.
-    while (answer.wait_for(kPause) != std::future_status::ready) (void)rig.keepAlive();
+    while (answer.wait_for(kPause) != std::future_status::ready) {
+        alive();
+        (void)rig.keepAlive();
+    }
     return answer.get();
 }
 
