@@ -37,13 +37,18 @@ public:
         : answer_(std::async(std::launch::async | std::launch::deferred,
                              [task = std::move(task)]() mutable { return run(task); })) {}
 
-    /// Waits, and keeps the rig alive meanwhile. Once.
-    Result<Value> await(driver::Rig& rig) {
+    /// Waits, keeps the rig alive meanwhile, and calls `waiting` as often. Once.
+    template <class Waiting>
+    Result<Value> await(driver::Rig& rig, Waiting waiting) {
         bool alive = true;
         while (answer_.wait_for(kFeeding) == std::future_status::timeout) {
+            waiting();
             if (alive) alive = rig.keepAlive().has_value();
         }
         return answer_.get();
+    }
+    Result<Value> await(driver::Rig& rig) {
+        return await(rig, [] {});
     }
 
 private:
@@ -74,6 +79,11 @@ Alongside(Task) -> Alongside<typename AsResult<std::invoke_result_t<Task&>>::Typ
 template <class Task>
 [[nodiscard]] auto alongside(driver::Rig& rig, Task task) {
     return Alongside(std::move(task)).await(rig);
+}
+
+template <class Waiting, class Task>
+[[nodiscard]] auto alongside(driver::Rig& rig, Waiting waiting, Task task) {
+    return Alongside(std::move(task)).await(rig, std::move(waiting));
 }
 
 }  // namespace gonio::daemon

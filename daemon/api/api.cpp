@@ -19,9 +19,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kJobsListed = 100;
-constexpr int kMethodNotAllowed = 405;
-constexpr int kNotFound = 404;
 constexpr int kAccepted = 202;
+constexpr int kNotFound = 404;
+constexpr int kMethodNotAllowed = 405;
+constexpr int kUnsupportedType = 415;
 
 int httpStatus(ErrorKind kind) {
     switch (kind) {
@@ -37,14 +38,8 @@ int httpStatus(ErrorKind kind) {
     return 500;
 }
 
-ApiReply problemReply(int status, std::string_view type, const std::string& detail) {
-    const Json json{{"type", "urn:gonio:problem:" + std::string(type)},
-                    {"title", std::string(type)},
-                    {"status", status},
-                    {"detail", detail}};
-    return {.status = status,
-            .type = "application/problem+json",
-            .body = json.dump(-1, ' ', false, Json::error_handler_t::replace)};
+ApiReply misused(int status, const std::string& detail) {
+    return problem({ErrorKind::Usage, detail}, status);
 }
 
 /// Members of a request's body; remembers the first that is of the wrong kind.
@@ -101,6 +96,9 @@ private:
     std::map<std::string, bool> known_;
     std::string wrong_;
 };
+
+/// A body that has nothing to say: empty, or an object without members.
+Result<void> nothingIn(const std::string& body) { return Fields(body).verdict(); }
 
 struct Call {
     Engine& engine;
@@ -183,16 +181,19 @@ Result<ApiReply> getSampleRaw(const Call& call) {
     return fileReply(sample->raw, kBytes);
 }
 
-/// The band that ?band= names, which a format with one file for each needs.
+/// The band that ?band= names, which a format with one file for each needs, and no other takes.
 Result<std::optional<Band>> wantedBand(const Call& call, ExportFormat format) {
     const auto asked = call.request.query.find("band");
-    if (asked != call.request.query.end()) {
-        for (Band band : kBands) {
-            if (letter(band) == asked->second) return std::optional(band);
-        }
+    const bool one = format == ExportFormat::Zemax;
+    if (asked == call.request.query.end() && !one) return std::optional<Band>();
+    if (!one) {
+        return Error{ErrorKind::Usage,
+                     std::string(name(format)) + " holds all bands: ?band= is not for it"};
     }
-    if (format != ExportFormat::Zemax && asked == call.request.query.end()) {
-        return std::optional<Band>();
+    for (Band band : kBands) {
+        if (asked != call.request.query.end() && letter(band) == asked->second) {
+            return std::optional(band);
+        }
     }
     return Error{ErrorKind::Usage, "zemax holds one band: wanted ?band=r, g or b"};
 }
@@ -223,7 +224,8 @@ Result<ApiReply> getJob(const Call& call) {
     Result<Logbook> book = logbook(call);
     if (!book) return book.error();
     const auto job = book->job(*number);
-    if (!job) return problemReply(kNotFound, "usage", job.error().message);
+    if (!job && job.error().kind == ErrorKind::Usage) return problem(job.error(), kNotFound);
+    if (!job) return job.error();
     return reply("job", toJson(*job));
 }
 
@@ -259,6 +261,7 @@ Result<ApiReply> postJob(const Call& call) {
 Result<ApiReply> postJobWish(const Call& call, Result<void> (Engine::*wish)(std::int64_t)) {
     const auto number = jobNumber(call);
     if (!number) return number.error();
+    if (Result<void> good = nothingIn(call.request.body); !good) return good.error();
     if (Result<void> done = (call.engine.*wish)(*number); !done) return done.error();
     return reply("job-wish", {{"id", *number}}, kAccepted);
 }
@@ -277,6 +280,7 @@ Result<ApiReply> postSession(const Call& call) {
 }
 
 Result<ApiReply> postSessionClose(const Call& call) {
+    if (Result<void> good = nothingIn(call.request.body); !good) return good.error();
     const auto closed = call.engine.closeSession();
     if (!closed) return closed.error();
     return reply("session", toJson(*closed));
@@ -355,8 +359,22 @@ bool saysJson(const std::string& contentType) {
 
 }  // namespace
 
-ApiReply problem(const Error& error) {
-    return problemReply(httpStatus(error.kind), problemName(error.kind), error.message);
+ApiReply problem(const Error& error, std::optional<int> status) {
+    const std::string type(problemName(error.kind));
+    const int code = status.value_or(httpStatus(error.kind));
+    const Json json{{"type", "urn:gonio:problem:" + type},
+                    {"title", type},
+                    {"status", code},
+                    {"detail", error.message}};
+    return {.status = code,
+            .type = "application/problem+json",
+            .body = json.dump(-1, ' ', false, Json::error_handler_t::replace)};
+}
+
+std::vector<ApiRoute> Api::routes() {
+    std::vector<ApiRoute> list;
+    for (const Route& route : kRoutes) list.push_back({route.method, route.path});
+    return list;
 }
 
 ApiReply Api::handle(const ApiRequest& request) const {
@@ -367,13 +385,13 @@ ApiReply Api::handle(const ApiRequest& request) const {
         known = true;
         if (route.method != request.method) continue;
         if (request.method == "POST" && !saysJson(request.contentType)) {
-            return problemReply(415, "usage", "wanted Content-Type: application/json");
+            return misused(kUnsupportedType, "wanted Content-Type: application/json");
         }
         const Result<ApiReply> answer = route.handler({engine_, request, std::move(*names)});
         return answer ? *answer : problem(answer.error());
     }
-    if (known) return problemReply(kMethodNotAllowed, "usage", request.method + ": not here");
-    return problemReply(kNotFound, "usage", request.path + ": there is no such thing");
+    if (known) return misused(kMethodNotAllowed, request.method + ": not here");
+    return misused(kNotFound, request.path + ": there is no such thing");
 }
 
 }  // namespace gonio::daemon

@@ -4,7 +4,10 @@
 // the right exit code. Ids and names, never paths; the simulated rig's own door is the exception.
 
 #include <map>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "daemon/engine/engine.h"
 
@@ -24,10 +27,18 @@ struct ApiReply {
     std::string body;
 };
 
+struct ApiRoute {
+    std::string_view method;
+    std::string_view path;  ///< '*' stands for one name
+};
+
 class Api {
 public:
     /// `engine` is borrowed.
     explicit Api(Engine& engine) : engine_(engine) {}
+
+    /// All that handle() knows.
+    [[nodiscard]] static std::vector<ApiRoute> routes();
 
     /// For any number of threads.
     [[nodiscard]] ApiReply handle(const ApiRequest& request) const;
@@ -36,6 +47,7 @@ private:
     Engine& engine_;
 };
 
-[[nodiscard]] ApiReply problem(const Error& error);
+/// With the HTTP status of its kind, or another.
+[[nodiscard]] ApiReply problem(const Error& error, std::optional<int> status = {});
 
 }  // namespace gonio::daemon

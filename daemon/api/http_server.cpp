@@ -20,7 +20,10 @@ constexpr int kMostStreams = 16;
 constexpr std::size_t kLongestBody = 1 << 20;
 constexpr int kOldEventsAtOnce = 500;
 constexpr auto kHeartbeat = 1000ms;
+constexpr int kUnavailable = 503;
 constexpr int kUnusedPort = 80;  // a UNIX socket has none
+// An idle connection, or a request that stops half-way, holds up the end of the server for so long.
+constexpr std::time_t kSilenceSeconds = 1;
 
 ApiRequest requestOf(const httplib::Request& http) {
     ApiRequest request{.method = http.method,
@@ -55,9 +58,17 @@ public:
 
     /// False: there will be no more.
     bool next(std::string& text) {
-        std::vector<EventRecord> events = remembered();
-        const auto wait = begun_ ? kHeartbeat : 0ms;
-        if (events.empty()) events = engine_.events().after(after_, wait);
+        std::vector<EventRecord> events;
+        bool gap = true;
+        while (gap) {
+            Result<std::vector<EventRecord>> old = remembered();
+            if (!old) return false;  // the watcher comes back and asks again
+            events = std::move(*old);
+            if (!events.empty()) break;
+            events = engine_.events().after(after_, begun_ ? kHeartbeat : 0ms);
+            // The memory may have moved on since: then the logbook has what fell out of it.
+            gap = !events.empty() && events.front().id > after_ + 1;
+        }
         begun_ = true;
         text.clear();
         for (const EventRecord& event : events) text += streamText(event);
@@ -67,12 +78,17 @@ public:
     }
 
 private:
-    std::vector<EventRecord> remembered() {
-        if (after_ + 1 >= engine_.events().oldest()) return {};
+    /// The next of those that the memory no longer has; none: the memory goes on from here.
+    Result<std::vector<EventRecord>> remembered() {
+        const std::uint64_t oldest = engine_.events().oldest();
+        if (after_ + 1 >= oldest) return std::vector<EventRecord>();
         Result<Logbook> book = Logbook::open(engine_.storeRoot());
-        if (!book) return {};
+        if (!book) return book.error();
         auto events = book->eventsAfter(after_, kOldEventsAtOnce);
-        return events ? std::move(*events) : std::vector<EventRecord>();
+        if (!events) return events;
+        std::erase_if(*events, [&](const EventRecord& event) { return event.id >= oldest; });
+        if (events->empty()) after_ = oldest - 1;
+        return events;
     }
     Engine& engine_;
     std::uint64_t after_;
@@ -112,13 +128,15 @@ void HttpServer::Impl::follow(const httplib::Request& request, httplib::Response
     if (++streams_ > kMostStreams) {
         --streams_;
         response.set_header("Retry-After", "5");
-        return answer(problem({ErrorKind::NoRig, "16 event streams are open already"}), response);
+        return answer(problem({ErrorKind::Busy, "16 event streams are open already"}, kUnavailable),
+                      response);
     }
     std::string from = request.get_header_value("Last-Event-ID");
     if (from.empty()) from = request.get_param_value("after");
     const auto number = parseInteger(from);
+    const std::uint64_t newest = engine_.events().newest();
     const auto after =
-        number && *number >= 0 ? static_cast<std::uint64_t>(*number) : engine_.events().newest();
+        number && *number >= 0 ? std::min(static_cast<std::uint64_t>(*number), newest) : newest;
     response.set_header("Cache-Control", "no-store");
     auto follower = std::make_shared<Follower>(engine_, after);  // shared: std::function copies
     response.set_chunked_content_provider(
@@ -149,12 +167,21 @@ void HttpServer::Impl::route() {
     server_.Put(everything, handle);
     server_.Patch(everything, handle);
     server_.Delete(everything, handle);
+    server_.Options(everything, handle);
     server_.set_exception_handler(
         [](const httplib::Request& /*request*/, httplib::Response& response, std::exception_ptr) {
             log::error("api: internal error");
             answer(problem({ErrorKind::Internal, "internal error"}), response);
         });
+    // What never came as far as a handler: too long, or no HTTP.
+    server_.set_error_handler([](const httplib::Request& /*request*/, httplib::Response& response) {
+        if (!response.body.empty()) return;
+        answer(problem({ErrorKind::Usage, "this request is not served"}, response.status),
+               response);
+    });
     server_.set_payload_max_length(kLongestBody);
+    server_.set_keep_alive_timeout(kSilenceSeconds);
+    server_.set_read_timeout(kSilenceSeconds);
     server_.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };  // it deletes it
 }
 

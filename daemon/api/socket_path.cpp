@@ -36,7 +36,9 @@ Result<SocketClaim> SocketClaim::take(const fs::path& socket) {
     const std::string file = socket.string() + ".lock";
     SocketClaim claim(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600), {});
     if (claim.lock_ < 0) {
-        return Error{ErrorKind::Busy, "socket " + file + ": " + std::strerror(errno)};
+        const bool noPlace = errno == ENOENT || errno == ENOTDIR;
+        return Error{noPlace ? ErrorKind::File : ErrorKind::Busy,
+                     "socket " + file + ": " + std::strerror(errno)};
     }
     if (::flock(claim.lock_, LOCK_EX | LOCK_NB) != 0) {
         return Error{ErrorKind::Busy,

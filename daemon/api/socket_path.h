@@ -23,7 +23,8 @@ enum class SocketAccess {
 /// The right to serve at a socket: held while this lives, the socket's file removed with it.
 class SocketClaim {
 public:
-    /// Busy when another daemon serves there. What a daemon that was killed left behind is removed.
+    /// Busy when another daemon serves there, or something else is in its place; File error without
+    /// the folder. What a daemon that was killed left behind is removed.
     [[nodiscard]] static Result<SocketClaim> take(const std::filesystem::path& socket);
     SocketClaim(SocketClaim&& other) noexcept;
     SocketClaim& operator=(SocketClaim&&) = delete;

@@ -18,6 +18,7 @@ std::vector<StreamEvent> EventStream::feed(std::string_view bytes) {
 }
 
 void EventStream::line(std::string_view text, std::vector<StreamEvent>& done) {
+    if (text.ends_with('\r')) text.remove_suffix(1);
     if (text.empty()) {
         if (!next_.data.empty()) done.push_back(next_);
         next_ = {};
@@ -29,7 +30,8 @@ void EventStream::line(std::string_view text, std::vector<StreamEvent>& done) {
     if (value.starts_with(' ')) value.remove_prefix(1);
     const std::string_view field = text.substr(0, colon);
     if (field == "id") {
-        next_.id = static_cast<std::uint64_t>(parseInteger(value).value_or(0));
+        const std::int64_t number = parseInteger(value).value_or(0);
+        next_.id = number > 0 ? static_cast<std::uint64_t>(number) : 0;
     } else if (field == "event") {
         next_.type = value;
     } else if (field == "data") {

@@ -16,13 +16,24 @@ constexpr auto kPause = 250ms;          // between two looks at an idle rig: hea
 constexpr Nanoseconds kRescan = 500ms;  // PROTOCOL.md 4
 constexpr Nanoseconds kRetryHeld = 2s;  // held by another, or no permission
 constexpr std::uint64_t kReservedSteps = 1 << 16;  // no job takes more captures
+constexpr std::uint64_t kReservedNumbers = 1000;   // of events: some jobs
+constexpr const char* kLastNumber = "event-number";
 
 std::string dump(const Json& json) {
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
+std::string titleOf(const JobRecord& job) {
+    return job.kind + (job.name.empty() ? "" : " " + job.name);
+}
+
 Error stopping() { return {ErrorKind::Busy, "the daemon is stopping"}; }
 Error cancelled(const std::string& job) { return {ErrorKind::Interrupted, job + ": cancelled"}; }
+Error busyWith(const JobRecord& job) {
+    return {ErrorKind::Busy,
+            "the rig is busy with " + titleOf(job) +
+                "; wait until it is done, or end it: gonio jobs cancel"};
+}
 
 }  // namespace
 
@@ -46,6 +57,7 @@ public:
     }
     Result<void> ask(const std::string& what) override;
     void captured() override { engine_.advance(EngineEvent::Captured); }
+    void computing() override { engine_.world_.alive(); }
 
     /// How a job that did not succeed has ended.
     [[nodiscard]] JobState verdict() const {
@@ -59,8 +71,12 @@ private:
         const std::scoped_lock lock(engine_.mutex_);
         return stop_.stop_requested() || engine_.wish_ == Wish::Cancel;
     }
-    void prompt(const std::string& what) {
-        engine_.publish([&](EngineStatus& status) { status.job->prompt = what; });
+    /// An answer counts from the moment on at which the question can be seen.
+    std::int64_t prompt(const std::string& what) {
+        const std::scoped_lock lock(engine_.mutex_);
+        if (engine_.wish_ == Wish::Proceed) engine_.wish_ = Wish::None;
+        engine_.status_.job->prompt = what;
+        return engine_.status_.job->record.id;
     }
 
     Engine& engine_;
@@ -91,13 +107,7 @@ void Engine::Monitor::tell(const std::string& what) {
 }
 
 Result<void> Engine::Monitor::ask(const std::string& what) {
-    prompt(what);
-    std::int64_t job = 0;
-    {
-        const std::scoped_lock lock(engine_.mutex_);
-        engine_.wish_ = engine_.wish_ == Wish::Cancel ? Wish::Cancel : Wish::None;
-        job = *engine_.running_;
-    }
+    const std::int64_t job = prompt(what);
     engine_.tell("operator", dump({{"job", job}, {"wanted", what}}), true);
     while (true) {
         engine_.world_.alive();
@@ -109,7 +119,6 @@ Result<void> Engine::Monitor::ask(const std::string& what) {
             return cancelled(job_);
         }
         if (engine_.wish_ == Wish::Proceed) {
-            engine_.wish_ = Wish::None;
             lock.unlock();
             prompt({});
             return {};
@@ -127,15 +136,9 @@ Result<T> Engine::ask(std::function<Result<T>()> work) {
     {
         const std::scoped_lock lock(mutex_);
         if (ended_) return stopping();
-        if (busy_) {
-            const std::string job = status_.job ? status_.job->record.kind : "a job";
-            const std::string name = status_.job ? status_.job->record.name : "";
-            return Error{ErrorKind::Busy,
-                         "the rig is busy with " + job + (name.empty() ? "" : " " + name) +
-                             "; wait until it is done, or end it: gonio jobs cancel"};
-        }
-        mailbox_.push_back([answer, work = std::move(work)](bool served) {
-            answer->set_value(served ? work() : stopping());
+        if (status_.job) return busyWith(status_.job->record);
+        mailbox_.push_back([answer, work = std::move(work)](const std::optional<Error>& refusal) {
+            answer->set_value(refusal ? Result<T>(*refusal) : work());
         });
     }
     asked_.notify_all();
@@ -143,7 +146,7 @@ Result<T> Engine::ask(std::function<Result<T>()> work) {
 }
 
 void Engine::serveNext() {
-    std::function<void(bool)> next;
+    Mail next;
     {
         std::unique_lock lock(mutex_);
         asked_.wait_for(lock, kPause, [&] { return !mailbox_.empty(); });
@@ -151,17 +154,25 @@ void Engine::serveNext() {
         next = std::move(mailbox_.front());
         mailbox_.pop_front();
     }
-    next(true);
+    next({});
 }
 
-void Engine::refuseAll() {
-    std::deque<std::function<void(bool)>> left;
+/// What was asked for and not yet begun: the owner will not come to it for long, or never.
+void Engine::refuseAll(const Error& why) {
+    std::deque<Mail> left;
+    {
+        const std::scoped_lock lock(mutex_);
+        left.swap(mailbox_);
+    }
+    for (const Mail& mail : left) mail(why);
+}
+
+void Engine::end() {
     {
         const std::scoped_lock lock(mutex_);
         ended_ = true;
-        left.swap(mailbox_);
     }
-    for (const auto& mail : left) mail(false);
+    refuseAll(stopping());
 }
 
 Result<JobRecord> Engine::submit(const JobRequest& request) {
@@ -170,7 +181,6 @@ Result<JobRecord> Engine::submit(const JobRequest& request) {
 }
 
 Result<JobRecord> Engine::begin(const JobRequest& request) {
-    if (pending_) return Error{ErrorKind::Busy, "another job was quicker; wait until it is done"};
     const EngineState state = status().state;
     if (state != EngineState::Idle) {
         return Error{state == EngineState::Fault ? ErrorKind::Device : ErrorKind::NoRig,
@@ -184,11 +194,10 @@ Result<JobRecord> Engine::begin(const JobRequest& request) {
     pending_ = Pending{request, *record};
     {
         const std::scoped_lock lock(mutex_);
-        busy_ = true;
-        running_ = record->id;
         wish_ = Wish::None;
         status_.job = JobStatus{.record = *record};
     }
+    refuseAll(busyWith(*record));
     tellJob(*record);
     return record;
 }
@@ -196,7 +205,7 @@ Result<JobRecord> Engine::begin(const JobRequest& request) {
 Result<void> Engine::cancel(std::int64_t job) {
     {
         const std::scoped_lock lock(mutex_);
-        if (running_ != job) {
+        if (!runs(job)) {
             return Error{ErrorKind::Usage, "job " + std::to_string(job) + " is not running"};
         }
         wish_ = Wish::Cancel;
@@ -208,7 +217,7 @@ Result<void> Engine::cancel(std::int64_t job) {
 Result<void> Engine::proceed(std::int64_t job) {
     {
         const std::scoped_lock lock(mutex_);
-        if (running_ != job || !status_.job || status_.job->prompt.empty()) {
+        if (!runs(job) || status_.job->prompt.empty()) {
             return Error{ErrorKind::Usage, "job " + std::to_string(job) + " waits for nobody"};
         }
         if (wish_ == Wish::None) wish_ = Wish::Proceed;
@@ -278,8 +287,17 @@ void Engine::publishCalibrations() {
     publish([&](EngineStatus& status) { status.calibrations = std::move(dates); });
 }
 
+/// Not all events are kept, and no number is given twice: those of the next ones are taken before.
+void Engine::reserveNumbers() {
+    if (events_.newest() < lastNumber_) return;
+    lastNumber_ = events_.newest() + kReservedNumbers;
+    const auto set = logbook_.set(kLastNumber, std::to_string(lastNumber_));
+    if (!set) log::error(set.error().message);
+}
+
 /// A kept event is in the logbook before anyone hears of it.
 void Engine::tell(const std::string& type, const std::string& json, bool kept) {
+    reserveNumbers();
     EventRecord event{.dateUtc = world_.utcNow(), .type = type, .data = json};
     if (kept) {
         event.id = events_.newest() + 1;  // this thread alone adds
@@ -439,8 +457,7 @@ void Engine::runPending(const std::stop_token& stop) {
     if (!pending_) return;
     Pending job = std::move(*pending_);
     pending_.reset();
-    const std::string what =
-        job.record.kind + (job.record.name.empty() ? "" : " " + job.record.name);
+    const std::string what = titleOf(job.record);
     log::info("job " + std::to_string(job.record.id) + ": " + what);
     advance(EngineEvent::JobBegun);
     Monitor monitor(*this, stop, what);
@@ -451,8 +468,6 @@ void Engine::runPending(const std::stop_token& stop) {
     publishCalibrations();
     {
         const std::scoped_lock lock(mutex_);
-        busy_ = false;
-        running_.reset();
         status_.job.reset();
     }
     advance(EngineEvent::JobEnded);
@@ -467,7 +482,7 @@ void Engine::run(const std::stop_token& stop) {
         serveNext();
         runPending(stop);
     }
-    refuseAll();
+    end();
     disconnect();
     events_.close();
 }
@@ -487,11 +502,12 @@ Engine::Engine(Store store,
       port_(port),
       profile_(std::move(profile)),
       world_(std::move(world)),
-      events_(newestEvent) {
+      events_(newestEvent),
+      lastNumber_(newestEvent) {
     status_.portKind = port.kind();
 }
 
-Engine::~Engine() { refuseAll(); }
+Engine::~Engine() { end(); }
 
 Result<std::unique_ptr<Engine>> Engine::open(const std::filesystem::path& root,
                                              RigPort& port,
@@ -507,6 +523,9 @@ Result<std::unique_ptr<Engine>> Engine::open(const std::filesystem::path& root,
     if (!interrupted) return interrupted.error();
     const auto newest = logbook->newestEvent();
     if (!newest) return newest.error();
+    const auto reserved = logbook->setting(kLastNumber);
+    if (!reserved) return reserved.error();
+    const auto given = static_cast<std::uint64_t>(parseInteger(*reserved).value_or(0));
     const auto session = logbook->currentSession();
     if (!session) return session.error();
     std::unique_ptr<Engine> engine(new Engine(std::move(*store),
@@ -515,7 +534,7 @@ Result<std::unique_ptr<Engine>> Engine::open(const std::filesystem::path& root,
                                               port,
                                               std::move(profile),
                                               std::move(world),
-                                              *newest));
+                                              std::max(*newest, given)));
     engine->status_.session = *session;
     for (const JobRecord& job : *interrupted) engine->tellJob(job);
     return engine;

@@ -58,7 +58,8 @@ struct EngineWorld {
     const Clock& clock;
     std::function<std::string()> utcNow;
     std::function<std::uint64_t()> randomId;  ///< of a claim
-    std::function<void()> alive;              ///< called at least each second by a sound owner
+    /// Called by a sound owner at each step of a job, and several times a second otherwise.
+    std::function<void()> alive;
 };
 
 class Engine {
@@ -97,6 +98,8 @@ private:
         JobRequest request;
         JobRecord record;
     };
+    /// Work for the owner, or why it is not done.
+    using Mail = std::function<void(const std::optional<Error>& refusal)>;
     enum class Wish {
         None,
         Proceed,
@@ -114,7 +117,12 @@ private:
     template <class T>
     Result<T> ask(std::function<Result<T>()> work);
     void serveNext();
-    void refuseAll();
+    void refuseAll(const Error& why);
+    void end();
+    /// Precondition: mutex_ is held.
+    [[nodiscard]] bool runs(std::int64_t job) const {
+        return status_.job && status_.job->record.id == job;
+    }
     Result<JobRecord> begin(const JobRequest& request);
 
     void connect();
@@ -128,6 +136,7 @@ private:
     [[nodiscard]] Result<std::uint64_t> reserveSteps();
 
     void advance(EngineEvent event, const std::string& detail = {});
+    void reserveNumbers();
     void tell(const std::string& type, const std::string& json, bool kept);
     void tellJob(const JobRecord& job);
     template <class Change>
@@ -143,6 +152,7 @@ private:
     EventLog events_;
 
     // The owner's alone.
+    std::uint64_t lastNumber_;  ///< of an event, of those that are reserved
     std::optional<driver::Rig> rig_;
     std::optional<Pending> pending_;
     Nanoseconds nextTry_{0};
@@ -150,11 +160,9 @@ private:
 
     mutable std::mutex mutex_;  ///< of what is below
     std::condition_variable asked_;
-    std::deque<std::function<void(bool served)>> mailbox_;
+    std::deque<Mail> mailbox_;
     EngineStatus status_;
-    bool busy_ = false;
     bool ended_ = false;
-    std::optional<std::int64_t> running_;
     Wish wish_ = Wish::None;
 };
 

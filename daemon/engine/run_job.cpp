@@ -51,6 +51,12 @@ private:
                 .clock = bench_.computer,
                 .step = [this](const std::string& what) { return bench_.monitor.step(what); }};
     }
+    /// What `work` answers, which takes long; rig and watchdog are fed meanwhile.
+    template <class Work>
+    auto whileAlive(Work work) const {
+        return alongside(
+            bench_.rig, [this] { bench_.monitor.computing(); }, std::move(work));
+    }
     [[nodiscard]] std::size_t leds() const { return bench_.rig.identify().ledAngles.size(); }
     [[nodiscard]] proc::SampleInfo info(const std::string& name) const;
     /// Takes all states of what lies under the rig, which is dark afterwards.
@@ -160,11 +166,13 @@ Result<Json> JobRun::calibrateMirror() {
 Result<Json> JobRun::calibrateTile(bool white) {
     const std::string kind = white ? "white" : "black";
     if (Result<void> placed = expectPlaced(kind); !placed) return placed.error();
+    // Looked for before minutes go into what would be refused without it.
+    const Result<ReferenceRecord> black =
+        white ? reference("black") : Result<ReferenceRecord>(ReferenceRecord{});
+    if (!black) return black.error();
     Result<Captured> captured = capture(white ? kWhiteBracket : kBlackBracket, 2 * kDarkFrames);
     if (!captured) return captured.error();
     if (white) {
-        const Result<ReferenceRecord> black = reference("black");
-        if (!black) return black.error();
         if (Result<void> bright = checkWhite(captured->signals, black->signals); !bright) {
             return bright.error();
         }
@@ -174,7 +182,7 @@ Result<Json> JobRun::calibrateTile(bool white) {
     finish(about, *captured);
     const std::size_t states = captured->raw.states.size();
     const std::vector<Radians> angles = bench_.rig.identify().ledAngles;
-    const auto kept = alongside(bench_.rig, [&]() -> Result<CalibrationRecord> {
+    const auto kept = whileAlive([&]() -> Result<CalibrationRecord> {
         const Result<std::string> raw = rawBytes(about, std::move(captured->raw.states));
         if (!raw) return raw.error();
         const Result<std::string> bytes = encodeReference({about, captured->signals}, angles);
@@ -286,7 +294,7 @@ Result<Json> JobRun::measure() {
     finish(about, *captured);
     proc::SampleSet set;
     const std::vector<Radians> angles = bench_.rig.identify().ledAngles;
-    const auto kept = alongside(bench_.rig, [&] {
+    const auto kept = whileAlive([&] {
         const Stopwatch calibrating(bench_.computer);
         set = calibrateSample(captured->signals,
                               angles,

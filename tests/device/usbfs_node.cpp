@@ -57,7 +57,10 @@ UsbfsNode::~UsbfsNode() {
 }
 
 void UsbfsNode::forget(std::deque<Urb>& urbs) {
-    for (Urb& urb : urbs) umockdev_ioctl_data_unref(urb.data);
+    for (Urb& urb : urbs) {
+        umockdev_ioctl_data_unref(urb.data);
+        g_object_unref(urb.client);
+    }
     urbs.clear();
 }
 
@@ -71,29 +74,36 @@ void UsbfsNode::pull() {
     waiting_.clear();
 }
 
-/// The transfers of a process that was killed are gone with it, as its memory is.
-void UsbfsNode::firstOpened() {
-    const std::scoped_lock lock(mutex_);
-    forget(waiting_);
-    forget(done_);
+/// The transfers of a file that was closed are gone with it, as the memory of a killed process is.
+void UsbfsNode::forgetTheDead() {
+    for (std::deque<Urb>* urbs : {&waiting_, &done_}) {
+        std::erase_if(*urbs, [](const Urb& urb) {
+            if (umockdev_ioctl_client_get_connected(urb.client)) return false;
+            umockdev_ioctl_data_unref(urb.data);
+            g_object_unref(urb.client);
+            return true;
+        });
+    }
 }
 
 gboolean UsbfsNode::onIoctl(UMockdevIoctlBase*, UMockdevIoctlClient* client, UsbfsNode* self) {
-    const int error = self->answer(umockdev_ioctl_client_get_request(client),
-                                   umockdev_ioctl_client_get_arg(client));
+    const int error = self->answer(client);
     umockdev_ioctl_client_complete(client, error == 0 ? 0 : -1, error);
     return TRUE;
 }
 
-int UsbfsNode::answer(unsigned long request, UMockdevIoctlData* arg) {
+int UsbfsNode::answer(UMockdevIoctlClient* client) {
+    const unsigned long request = umockdev_ioctl_client_get_request(client);
+    UMockdevIoctlData* arg = umockdev_ioctl_client_get_arg(client);
     std::unique_lock lock(mutex_);
+    forgetTheDead();
     if (request == USBDEVFS_REAPURBNDELAY) {
         if (done_.empty() && !advanceBulk() && !gone()) {
             lock.unlock();
             std::this_thread::sleep_for(500us);
             lock.lock();
         }
-        return reap(arg);
+        return reap(client, arg);
     }
     if (gone()) return ENODEV;
     switch (request) {
@@ -106,7 +116,7 @@ int UsbfsNode::answer(unsigned long request, UMockdevIoctlData* arg) {
         case USBDEVFS_CLAIMINTERFACE:
         case USBDEVFS_DISCONNECT_CLAIM: return live_.faults.claimed ? EBUSY : 0;
         case USBDEVFS_RELEASEINTERFACE: return 0;
-        case USBDEVFS_SUBMITURB: return submit(arg);
+        case USBDEVFS_SUBMITURB: return submit(client, arg);
         case USBDEVFS_DISCARDURB: return discard(arg);
         case USBDEVFS_SETINTERFACE: return setInterface(arg);
         case USBDEVFS_CLEAR_HALT: {
@@ -129,10 +139,13 @@ int UsbfsNode::setInterface(UMockdevIoctlData* arg) {
     return reply.answer == sim::UsbAnswer::Done ? 0 : EPIPE;
 }
 
-int UsbfsNode::submit(UMockdevIoctlData* arg) {
+int UsbfsNode::submit(UMockdevIoctlClient* client, UMockdevIoctlData* arg) {
     UMockdevIoctlData* data = umockdev_ioctl_data_resolve(arg, 0, sizeof(usbdevfs_urb), nullptr);
     if (!data) return EFAULT;
-    Urb urb{.data = data, .reply = {}, .status = 0};
+    Urb urb{.client = UMOCKDEV_IOCTL_CLIENT(g_object_ref(client)),
+            .data = data,
+            .reply = {},
+            .status = 0};
     if (urbOf(data).type == USBDEVFS_URB_TYPE_CONTROL) {
         if (live_.faults.hung) {
             waiting_.push_back(urb);
@@ -144,6 +157,7 @@ int UsbfsNode::submit(UMockdevIoctlData* arg) {
     }
     if (static_cast<int>(waiting_.size()) >= live_.faults.mostTransfers) {
         umockdev_ioctl_data_unref(data);
+        g_object_unref(client);
         return ENOMEM;
     }
     waiting_.push_back(urb);
@@ -208,10 +222,12 @@ bool UsbfsNode::advanceBulk() {
     return true;
 }
 
-int UsbfsNode::reap(UMockdevIoctlData* arg) {
-    if (done_.empty()) return gone() ? ENODEV : EAGAIN;
-    Urb urb = std::move(done_.front());
-    done_.pop_front();
+int UsbfsNode::reap(UMockdevIoctlClient* client, UMockdevIoctlData* arg) {
+    const auto first = std::find_if(
+        done_.begin(), done_.end(), [&](const Urb& urb) { return urb.client == client; });
+    if (first == done_.end()) return gone() ? ENODEV : EAGAIN;
+    Urb urb = std::move(*first);
+    done_.erase(first);
     usbdevfs_urb& told = urbOf(urb.data);
     told.status = urb.status;
     if (told.type == USBDEVFS_URB_TYPE_BULK) {
@@ -223,6 +239,7 @@ int UsbfsNode::reap(UMockdevIoctlData* arg) {
     umockdev_ioctl_data_set_ptr(pointer, 0, urb.data);
     umockdev_ioctl_data_unref(pointer);
     umockdev_ioctl_data_unref(urb.data);
+    g_object_unref(urb.client);
     return 0;
 }
 

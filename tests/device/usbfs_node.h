@@ -21,25 +21,24 @@ public:
     ~UsbfsNode() override;
     void pull() override;
 
-protected:
-    void firstOpened() override;
-
 private:
     struct Urb {
-        UMockdevIoctlData* data = nullptr;  ///< the caller's struct usbdevfs_urb
+        UMockdevIoctlClient* client = nullptr;  ///< the open file that it belongs to
+        UMockdevIoctlData* data = nullptr;      ///< the caller's struct usbdevfs_urb
         sim::UsbReply reply;
         int status = 0;
     };
     static gboolean onIoctl(UMockdevIoctlBase*, UMockdevIoctlClient* client, UsbfsNode* self);
     /// The errno, 0 for success.
-    int answer(unsigned long request, UMockdevIoctlData* arg);
-    int submit(UMockdevIoctlData* arg);
+    int answer(UMockdevIoctlClient* client);
+    int submit(UMockdevIoctlClient* client, UMockdevIoctlData* arg);
     int discard(UMockdevIoctlData* arg);
-    int reap(UMockdevIoctlData* arg);
+    int reap(UMockdevIoctlClient* client, UMockdevIoctlData* arg);
     int setInterface(UMockdevIoctlData* arg);
     void runControl(Urb& urb);
     [[nodiscard]] bool advanceBulk();
     static void forget(std::deque<Urb>& urbs);
+    void forgetTheDead();
 
     LiveRig& live_;
     std::mutex mutex_;

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/daemon/cli/running_daemon.h"
+#include "tests/support/json_schema.h"
 
 namespace gonio {
 namespace {
@@ -29,6 +30,7 @@ public:
         EXPECT_EQ(ran.exitCode, 0) << ran.err;
         Json json = Json::parse(ran.out, nullptr, false);
         EXPECT_FALSE(json.is_discarded()) << ran.out;
+        EXPECT_EQ(test::complaintsOf(json), "") << json;
         return json;
     }
     void calibrate(const std::string& systematic, int seed) const {

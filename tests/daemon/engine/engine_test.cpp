@@ -1,0 +1,508 @@
+// One owner, one job at a time, and a rig that comes and goes.
+
+#include "daemon/engine/engine.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <barrier>
+
+#include "daemon/rig_calibration.h"
+#include "proc/core/number_text.h"
+#include "proc/models/spec.h"
+#include "proc/optics/cell_grid.h"
+#include "tests/daemon/engine/running_engine.h"
+#include "tests/daemon/engine/test_rig.h"
+#include "tests/support/temp_folder.h"
+
+namespace gonio::daemon {
+namespace {
+
+using namespace std::chrono_literals;
+using test::Json;
+using test::RunningEngine;
+using test::waitUntil;
+using test::Watcher;
+
+const JobRequest kMirrorJob{.kind = JobKind::CalibrateMirror};
+
+/// A store, and a rig of the kind that only a person can put things under.
+class EngineOnRig : public testing::Test {
+protected:
+    std::int64_t submit(RunningEngine& engine, const JobRequest& request = kMirrorJob) {
+        const auto job = engine->submit(request);
+        EXPECT_TRUE(job) << job.error().message;
+        return job ? job->id : 0;
+    }
+    JobRecord kept(std::int64_t job) {
+        auto book = Logbook::open(folder.path());
+        const auto found = book->job(job);
+        EXPECT_TRUE(found) << found.error().message;
+        return found ? *found : JobRecord{};
+    }
+    /// An engine whose job stands still at its first look at the rig.
+    std::int64_t submitHeld(RunningEngine& engine) {
+        engine.await(EngineState::Idle);
+        Watcher watcher(*engine);
+        port.cable.hold();
+        const auto job = submit(engine);
+        watcher.until("rig", {{"state", "running"}});
+        return job;
+    }
+    test::TempFolder folder;
+    test::TestPort port;
+};
+
+LensRecord lensRecord() {
+    Eigen::MatrixXd covariance = Eigen::MatrixXd::Identity(8, 8) * 1e-8;
+    covariance(0, 1) = covariance(1, 0) = 1e-9;
+    return {.fit = {.map = proc::LensMap::fTheta({640, 512}, 6.6),
+                    .covariance = covariance,
+                    .rmsPixels = 0.02,
+                    .worstPixels = 0.05},
+            .spots = 20,
+            .dateUtc = "t"};
+}
+
+/// A rig calibrated as far as a check of its white needs: the signals are far above what a white
+/// tile gives, so that it has changed by less than 100 %.
+void calibrate(const std::filesystem::path& root) {
+    auto store = Store::open(root);
+    ASSERT_TRUE(store) << store.error().message;
+    ASSERT_TRUE(store->addCalibration({.rig = "SIM-0001", .kind = "mirror", .dateUtc = "t"},
+                                      {.file = encodeLens(lensRecord()), .raw = {}}));
+    auto signal = proc::CellSignal::missing(proc::CellGrid::count());
+    for (std::size_t cell = 0; cell < signal.size(); ++cell) {
+        signal.signal[cell] = 1e15;
+        signal.variance[cell] = 1;
+        signal.nEff[cell] = 1;
+        signal.flags[cell] = Flags{Flag::Measured};
+    }
+    const PlacementSignals white(4, {signal, signal, signal});
+    const auto bytes = encodeReference({{}, white}, {0_deg, 20_deg, 40_deg, 60_deg});
+    ASSERT_TRUE(bytes) << bytes.error().message;
+    ASSERT_TRUE(store->addCalibration({.rig = "SIM-0001", .kind = "white", .dateUtc = "t"},
+                                      {.file = *bytes, .raw = {}}));
+}
+
+TEST_F(EngineOnRig, JobRunsThenComputesThenTheRigIsIdle) {
+    calibrate(folder.path());
+    auto white = proc::makeModel("lambert,albedo=0.9");
+    ASSERT_TRUE(white) << white.error().message;
+    port.cable.device().place(
+        {.role = sim::Role::Sample, .surface = std::move(*white), .wedge = {}});
+    RunningEngine engine(folder.path(), port);
+    engine.await(EngineState::Idle);
+    EXPECT_EQ(engine->status().calibrations.size(), 2U);
+    const int before = engine.aliveCalls();
+    Watcher watcher(*engine);
+    const std::uint64_t first = watcher.after() + 1;
+    const auto id = submit(engine, {.kind = JobKind::VerifyWhite, .limit = 1});
+    const auto events = watcher.until("job", {{"job", id}, {"state", "done"}});
+
+    std::vector<std::string> told;  // progress once, however often
+    int steps = 0;
+    for (std::size_t i = 0; i < events.size(); ++i) {
+        EXPECT_EQ(events[i].id, first + i) << "numbers have no gap";
+        const Json data = Json::parse(events[i].data);
+        if (events[i].type == "progress") {
+            EXPECT_EQ(data["step"], ++steps);
+            EXPECT_EQ(data["steps"], 13);  // one dark exposure, four LEDs of three bands
+            EXPECT_EQ(data["job"], id);
+            if (steps > 1) continue;
+        }
+        told.push_back(events[i].type +
+                       (data.contains("state") ? " " + std::string(data["state"]) : std::string()));
+    }
+    const std::vector<std::string> order{
+        "job running", "rig running", "progress", "rig finishing", "rig idle", "job done"};
+    EXPECT_EQ(told, order);
+    EXPECT_EQ(steps, 13);
+    EXPECT_GE(engine.aliveCalls(), before + steps) << "the watchdog is fed at each step";
+
+    EXPECT_FALSE(engine->status().job);
+    const JobRecord job = kept(id);
+    EXPECT_EQ(job.state, JobState::Done);
+    EXPECT_FALSE(job.error);
+    EXPECT_EQ(Json::parse(job.result)["schema"], "gonio/verify-white/1");
+    EXPECT_TRUE(port.cable.wasLit());
+    EXPECT_TRUE(waitUntil([&] { return !port.cable.lit(); }));
+}
+
+TEST_F(EngineOnRig, WhileAJobRunsEverythingElseIsBusy) {
+    RunningEngine engine(folder.path(), port);
+    const auto id = submitHeld(engine);
+    const auto busy = [](const Error& error) {
+        EXPECT_EQ(error.kind, ErrorKind::Busy);
+        EXPECT_NE(error.message.find("calibrate-mirror"), std::string::npos) << error.message;
+        EXPECT_NE(error.message.find("gonio jobs cancel"), std::string::npos) << error.message;
+    };
+    busy(engine->submit(kMirrorJob).error());
+    busy(engine->openSession({.name = "one"}).error());
+    busy(engine->closeSession().error());
+    const EngineStatus now = engine->status();
+    EXPECT_EQ(now.state, EngineState::Running);
+    ASSERT_TRUE(now.job);
+    EXPECT_EQ(now.job->record.id, id);
+    EXPECT_EQ(kept(id).state, JobState::Running);
+    port.cable.letGo();
+}
+
+TEST_F(EngineOnRig, OfJobsAskedForAtTheSameMomentOneRunsAndTheOthersAreToldAtOnce) {
+    RunningEngine engine(folder.path(), port);
+    engine.await(EngineState::Idle);
+    port.cable.hold();
+    constexpr int kThreads = 8;
+    std::barrier together(kThreads);
+    std::atomic<int> begun{0}, busy{0};
+    {
+        std::vector<std::jthread> clients;
+        for (int i = 0; i < kThreads; ++i) {
+            clients.emplace_back([&] {
+                together.arrive_and_wait();
+                const auto job = engine->submit(kMirrorJob);
+                ++(job ? begun : busy);
+                EXPECT_TRUE(job || job.error().kind == ErrorKind::Busy);
+            });
+        }
+        // The job stands still: whoever waited for its end would wait here.
+        EXPECT_TRUE(waitUntil([&] { return begun + busy == kThreads; }, 5s * test::kSlowdown));
+        EXPECT_EQ(begun, 1);
+        const auto running = engine->status().job;
+        EXPECT_TRUE(running && engine->cancel(running->record.id));
+        port.cable.letGo();
+    }
+    EXPECT_EQ(Logbook::open(folder.path())->jobs(100)->size(), 1U) << "none of them ran later";
+}
+
+TEST_F(EngineOnRig, CancelEndsTheJobAtItsNextStepAndTheLedsAreDark) {
+    RunningEngine engine(folder.path(), port);
+    engine.await(EngineState::Idle);
+    Watcher watcher(*engine);
+    const auto id = submit(engine);
+    ASSERT_TRUE(waitUntil([&] { return port.cable.lit(); }));
+    ASSERT_TRUE(engine->cancel(id));
+    const auto events = watcher.until("job", {{"job", id}, {"state", "cancelled"}});
+    EXPECT_EQ(events[events.size() - 2].type, "rig");  // idle again
+    EXPECT_TRUE(waitUntil([&] { return !port.cable.lit(); }));
+    engine.await(EngineState::Idle);
+    const JobRecord job = kept(id);
+    EXPECT_EQ(job.state, JobState::Cancelled);
+    ASSERT_TRUE(job.error);
+    EXPECT_EQ(job.error->kind, ErrorKind::Interrupted);
+    EXPECT_NE(job.endedUtc, "");
+    EXPECT_EQ(engine->cancel(id).error().kind, ErrorKind::Usage) << "it no longer runs";
+}
+
+TEST_F(EngineOnRig, EndedInTheMiddleOfAJobItLeavesItInterruptedAndTheRigDark) {
+    RunningEngine engine(folder.path(), port);
+    engine.await(EngineState::Idle);
+    const auto id = submit(engine);
+    ASSERT_TRUE(waitUntil([&] { return port.cable.lit(); }));
+    const auto begin = std::chrono::steady_clock::now();
+    engine.end();
+    // 3 s is what the daemon promises; a step of this job takes a tenth of that.
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, 3s * test::kSlowdown);
+    EXPECT_FALSE(port.cable.litInTheEnd());
+    EXPECT_EQ(kept(id).state, JobState::Interrupted);
+    EXPECT_TRUE(engine->events().closed());
+    const auto refused = engine->submit(kMirrorJob);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().kind, ErrorKind::Busy) << "the engine has ended";
+}
+
+TEST_F(EngineOnRig, JobThatRanWhenTheLastDaemonDiedIsInterruptedAndThatIsTold) {
+    std::int64_t id = 0;
+    {
+        ASSERT_TRUE(Store::open(folder.path()));
+        auto book = Logbook::open(folder.path());
+        ASSERT_TRUE(book) << book.error().message;
+        id = book->beginJob({.kind = "measure", .name = "tile", .startedUtc = "t"})->id;
+    }
+    RunningEngine engine(folder.path(), port);
+    Watcher watcher(*engine, 0);
+    const auto events = watcher.until("job", {{"job", id}, {"state", "interrupted"}});
+    EXPECT_EQ(Json::parse(events.back().data)["name"], "tile");
+    EXPECT_EQ(kept(id).state, JobState::Interrupted);
+    EXPECT_EQ(kept(id).error->kind, ErrorKind::Interrupted);
+    engine.await(EngineState::Idle);
+    EXPECT_FALSE(engine->status().job) << "it is never run again by itself";
+}
+
+/// What a kill -9 at this moment would leave of a store.
+void snapshot(const std::filesystem::path& store, const std::filesystem::path& to) {
+    std::filesystem::copy(store, to, std::filesystem::copy_options::recursive);
+}
+
+TEST_F(EngineOnRig, NumbersOfEventsAscendAlsoAfterAKill) {
+    const test::TempFolder after;
+    RunningEngine engine(folder.path(), port);
+    submitHeld(engine);  // the newest event, "running", is one that the logbook does not keep
+    const std::uint64_t newest = engine->events().newest();
+    snapshot(folder.path(), after / "store");
+    port.cable.letGo();
+
+    test::TestPort again;
+    RunningEngine next(after / "store", again);
+    Watcher watcher(*next, newest);  // as a client that comes back
+    watcher.until("job", {{"state", "interrupted"}});
+    EXPECT_GT(watcher.after(), newest);
+}
+
+TEST_F(EngineOnRig, PlanStepsAreNeverUsedTwiceAlsoAfterAKill) {
+    const auto nextStep = [&] {
+        return parseInteger(*Logbook::open(folder.path())->setting("plan-step/SIM-0001"));
+    };
+    RunningEngine engine(folder.path(), port);
+    const auto id = submitHeld(engine);
+    // Reserved before the first capture: a kill from here on leaves it at that.
+    EXPECT_TRUE(waitUntil([&] { return nextStep() == 1 + 65536; }));
+    Watcher watcher(*engine);
+    port.cable.letGo();
+    ASSERT_TRUE(engine->cancel(id));
+    watcher.until("job", {{"job", id}});
+    EXPECT_GE(nextStep(), 1);
+    EXPECT_LT(nextStep(), 100) << "what was not used is given back";
+}
+
+TEST_F(EngineOnRig, RigLostInAJobInterruptsItAndIsClaimedAgainWithTheSameNumber) {
+    RunningEngine engine(folder.path(), port);
+    engine.await(EngineState::Idle);
+    Watcher watcher(*engine);
+    const auto id = submit(engine);
+    watcher.until("progress");
+    port.cable.pull();
+    watcher.until("rig", {{"state", "interrupted"}});
+    watcher.until("job", {{"job", id}, {"state", "interrupted"}});
+    const EngineStatus lost = engine->status();
+    EXPECT_EQ(lost.state, EngineState::Interrupted);
+    EXPECT_NE(lost.obstacle.find("cable was pulled"), std::string::npos) << lost.obstacle;
+    EXPECT_FALSE(lost.rig);
+    const auto refused = engine->submit(kMirrorJob);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().kind, ErrorKind::NoRig);
+    EXPECT_EQ(kept(id).error->kind, ErrorKind::Device);
+
+    port.cable.plug();
+    engine.clock().turn(500ms);  // PROTOCOL.md 4: how often it is looked for
+    engine.await(EngineState::Idle);
+    EXPECT_EQ(engine->status().obstacle, "");
+    const auto claims = port.cable.claims();
+    ASSERT_GE(claims.size(), 2U);
+    for (const std::uint64_t claim : claims) EXPECT_EQ(claim, claims.front());
+    EXPECT_EQ(kept(id).state, JobState::Interrupted) << "it is never run again by itself";
+}
+
+TEST_F(EngineOnRig, ClaimNumberIsKeptOverARestart) {
+    {
+        RunningEngine engine(folder.path(), port);
+        engine.await(EngineState::Idle);
+    }
+    RunningEngine engine(folder.path(), port);
+    engine.await(EngineState::Idle);
+    const auto claims = port.cable.claims();
+    ASSERT_EQ(claims.size(), 2U);
+    EXPECT_EQ(claims[0], claims[1]);
+}
+
+TEST_F(EngineOnRig, RigThatIsHeldByAnotherIsTriedAgainAfterTwoSeconds) {
+    port.refuse(Error{ErrorKind::Busy, "held by another program"});
+    RunningEngine engine(folder.path(), port);
+    ASSERT_TRUE(engine.awaitTurns(3));
+    EXPECT_EQ(port.opens(), 1);
+    EXPECT_EQ(engine->status().state, EngineState::Offline);
+    EXPECT_EQ(engine->status().obstacle, "held by another program");
+    const auto refused = engine->submit(kMirrorJob);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().kind, ErrorKind::NoRig);
+    EXPECT_NE(refused.error().message.find("held by another program"), std::string::npos);
+    engine.clock().turn(1999ms);
+    ASSERT_TRUE(engine.awaitTurns(2));
+    EXPECT_EQ(port.opens(), 1);
+    engine.clock().turn(1ms);
+    ASSERT_TRUE(waitUntil([&] { return port.opens() == 2; }));
+    port.refuse({});
+    engine.clock().turn(2s);
+    engine.await(EngineState::Idle);
+    EXPECT_EQ(engine->status().obstacle, "");
+}
+
+TEST_F(EngineOnRig, RigThatIsNotThereIsLookedForEachHalfSecond) {
+    port.cable.pull();
+    RunningEngine engine(folder.path(), port);
+    ASSERT_TRUE(waitUntil([&] { return port.opens() == 1; }));
+    for (int looks = 2; looks < 4; ++looks) {
+        engine.clock().turn(500ms);
+        ASSERT_TRUE(waitUntil([&] { return port.opens() == looks; }));
+    }
+    port.cable.plug();
+    engine.clock().turn(500ms);
+    engine.await(EngineState::Idle);
+}
+
+TEST_F(EngineOnRig, RigThatGoesWhileIdleIsOfflineUntilItComesBack) {
+    RunningEngine engine(folder.path(), port);
+    engine.await(EngineState::Idle);
+    port.cable.pull();
+    engine.await(EngineState::Offline);
+    port.cable.plug();
+    engine.clock().turn(500ms);
+    engine.await(EngineState::Idle);
+}
+
+TEST_F(EngineOnRig, JobWaitsForAPersonAndGoesOnWhenItIsDone) {
+    port.mirrorPlacesItself = false;
+    RunningEngine engine(folder.path(), port);
+    engine.await(EngineState::Idle);
+    Watcher watcher(*engine);
+    const auto id = submit(engine);
+    const Json first = Json::parse(watcher.until("operator").back().data);
+    EXPECT_EQ(first["job"], id);
+    EXPECT_NE(first["wanted"].get<std::string>().find("mirror"), std::string::npos) << first;
+    ASSERT_TRUE(engine->status().job);
+    EXPECT_EQ(engine->status().job->prompt, first["wanted"]);
+    EXPECT_EQ(engine->status().state, EngineState::Running);
+    ASSERT_TRUE(engine.awaitTurns(2)) << "the watchdog is fed while it waits";
+
+    EXPECT_EQ(engine->proceed(id + 1).error().kind, ErrorKind::Usage);
+    ASSERT_TRUE(engine->proceed(id));
+    const auto events = watcher.until("operator");  // the next wedge
+    EXPECT_EQ(events.front().type, "progress");
+    EXPECT_NE(Json::parse(events.back().data)["wanted"], first["wanted"]);
+
+    ASSERT_TRUE(engine->cancel(id));
+    watcher.until("job", {{"job", id}, {"state", "cancelled"}});
+    EXPECT_EQ(kept(id).state, JobState::Cancelled);
+    EXPECT_EQ(engine->proceed(id).error().kind, ErrorKind::Usage) << "it waits for nobody";
+}
+
+TEST_F(EngineOnRig, AnswerThatComesWithTheQuestionIsNotLost) {
+    port.mirrorPlacesItself = false;
+    RunningEngine engine(folder.path(), port);
+    engine.await(EngineState::Idle);
+    Watcher watcher(*engine);
+    const auto id = submit(engine);
+    // As quick as a client can be: it looks at the status and never waits for the event.
+    ASSERT_TRUE(waitUntil([&] { return static_cast<bool>(engine->proceed(id)); }));
+    watcher.until("progress", {{"step", 2}});
+    ASSERT_TRUE(engine->cancel(id));
+}
+
+TEST_F(EngineOnRig, RigLostWhileAPersonIsAwaitedInterruptsTheJob) {
+    port.mirrorPlacesItself = false;
+    RunningEngine engine(folder.path(), port);
+    engine.await(EngineState::Idle);
+    Watcher watcher(*engine);
+    const auto id = submit(engine);
+    watcher.until("operator");
+    port.cable.pull();
+    watcher.until("job", {{"job", id}, {"state", "interrupted"}});
+    EXPECT_EQ(engine->status().state, EngineState::Interrupted);
+}
+
+TEST_F(EngineOnRig, OpenInterlockIsAFaultUntilItIsClosed) {
+    RunningEngine engine(folder.path(), port);
+    engine.await(EngineState::Idle);
+    Watcher watcher(*engine);
+    const auto id = submit(engine);
+    ASSERT_TRUE(waitUntil([&] { return port.cable.lit(); }));
+    port.cable.setInterlock(0);
+    watcher.until("job", {{"job", id}, {"state", "failed"}});
+    EXPECT_EQ(kept(id).error->kind, ErrorKind::Device);
+    engine.await(EngineState::Fault);
+    const auto refused = engine->submit(kMirrorJob);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().kind, ErrorKind::Device);
+    port.cable.setInterlock(driver::interlock::kMayLight);
+    engine.await(EngineState::Idle);
+}
+
+TEST_F(EngineOnRig, PlacingUnderARealRigIsAUsageError) {
+    RunningEngine engine(folder.path(), port);
+    const auto refused = engine->place({.what = "white"});
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().kind, ErrorKind::Usage);
+}
+
+TEST_F(EngineOnRig, JobThatNoRigCanDoIsRefusedBeforeItIsKept) {
+    RunningEngine engine(folder.path(), port);
+    engine.await(EngineState::Idle);
+    EXPECT_EQ(engine->submit({.name = "../x"}).error().kind, ErrorKind::Usage);
+    EXPECT_TRUE(Logbook::open(folder.path())->jobs(10)->empty());
+}
+
+TEST_F(EngineOnRig, JobThatFailsSaysWhyAndLeavesTheRigIdle) {
+    RunningEngine engine(folder.path(), port);
+    engine.await(EngineState::Idle);
+    Watcher watcher(*engine);
+    const auto id = submit(engine, {.name = "tile"});
+    const auto events = watcher.until("job", {{"job", id}, {"state", "failed"}});
+    const Json data = Json::parse(events.back().data);
+    EXPECT_NE(data["message"].get<std::string>().find("gonio calibrate mirror"), std::string::npos);
+    EXPECT_EQ(kept(id).error->kind, ErrorKind::Quality);
+    engine.await(EngineState::Idle);
+}
+
+TEST_F(EngineOnRig, SessionIsToldAndStillOpenAfterARestart) {
+    {
+        RunningEngine engine(folder.path(), port);
+        Watcher watcher(*engine);
+        const auto opened = engine->openSession({.name = "one", .operatorName = "Ada"});
+        ASSERT_TRUE(opened) << opened.error().message;
+        EXPECT_EQ(opened->openedUtc, "2026-01-02T03:04:05Z");
+        watcher.until("session", {{"name", "one"}, {"open", true}});
+        EXPECT_EQ(engine->openSession({.name = "two"}).error().kind, ErrorKind::Usage);
+    }
+    RunningEngine engine(folder.path(), port);
+    ASSERT_TRUE(engine->status().session);
+    EXPECT_EQ(engine->status().session->operatorName, "Ada");
+    Watcher watcher(*engine);
+    ASSERT_TRUE(engine->closeSession());
+    watcher.until("session", {{"name", "one"}, {"open", false}});
+    EXPECT_FALSE(engine->status().session);
+    EXPECT_EQ(engine->closeSession().error().kind, ErrorKind::Usage);
+}
+
+TEST_F(EngineOnRig, StoreHasOneOwner) {
+    const RunningEngine engine(folder.path(), port);
+    const test::TurnedClock clock;
+    const auto second = Engine::open(folder.path(),
+                                     port,
+                                     test::quickProfile(),
+                                     {.clock = clock,
+                                      .utcNow = [] { return "t"; },
+                                      .randomId = [] { return 1; },
+                                      .alive = [] {}});
+    ASSERT_FALSE(second);
+    EXPECT_EQ(second.error().kind, ErrorKind::Busy);
+}
+
+TEST(EngineOnSim, PlacesWhatItIsToldAndAnotherRigIsClaimedAnew) {
+    const test::TempFolder folder;
+    auto port = SimPort::open(folder.path());
+    ASSERT_TRUE(port) << port.error().message;
+    RunningEngine engine(folder.path(), **port);
+    engine.await(EngineState::Idle);
+    Watcher watcher(*engine);
+    ASSERT_TRUE(engine->place({.what = "mirror"}));
+    watcher.until("placed", {{"what", "mirror"}});
+    EXPECT_EQ(engine->status().placed, "mirror");
+    EXPECT_EQ(engine->place({.what = "model:lambret"}).error().kind, ErrorKind::Usage);
+    EXPECT_EQ(engine->status().placed, "mirror");
+
+    const auto job = engine->submit(kMirrorJob);
+    ASSERT_TRUE(job) << job.error().message;
+    const auto busy = engine->place({.what = "white"});
+    ASSERT_FALSE(busy);
+    EXPECT_EQ(busy.error().kind, ErrorKind::Busy);
+    ASSERT_TRUE(engine->cancel(job->id));
+    watcher.until("job", {{"job", job->id}, {"state", "cancelled"}});
+
+    ASSERT_TRUE(engine->place({.what = "white", .serial = "SIM-0002"}));
+    EXPECT_EQ(engine->status().serial, "SIM-0002");
+    EXPECT_EQ(engine->status().state, EngineState::Idle);
+    watcher.until("rig", {{"state", "idle"}, {"serial", "SIM-0002"}});
+}
+
+}  // namespace
+}  // namespace gonio::daemon

@@ -1,0 +1,163 @@
+#include "daemon/engine/sim_port.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+#include "proc/formats/gonio_exr.h"
+#include "tests/support/sample_sets.h"
+#include "tests/support/temp_folder.h"
+
+namespace gonio::daemon {
+namespace {
+
+class SimPortInStore : public testing::Test {
+protected:
+    std::unique_ptr<SimPort> opened() {
+        auto port = SimPort::open(folder.path());
+        EXPECT_TRUE(port) << port.error().message;
+        return port ? std::move(*port) : nullptr;
+    }
+    test::TempFolder folder;
+};
+
+ErrorKind refusal(const PlaceRequest& request) {
+    const auto good = check(request);
+    EXPECT_FALSE(good) << request.what;
+    return good ? ErrorKind::Internal : good.error().kind;
+}
+
+TEST(PlaceRequest, NamesAReferenceAModelASampleOrAWholePath) {
+    for (const char* what : {"nothing", "mirror", "white", "black", "model:x", "sample:x", "/a"}) {
+        EXPECT_TRUE(check(PlaceRequest{.what = what})) << what;
+    }
+    for (const char* what : {"", "White", "a.bsdf", "../a", "models:x"}) {
+        EXPECT_EQ(refusal({.what = what}), ErrorKind::Usage) << what;
+    }
+}
+
+TEST(PlaceRequest, OnlyTheMirrorIsTiltedUpTo30Degrees) {
+    EXPECT_TRUE(check(PlaceRequest{.what = "mirror", .tiltXDegrees = 30, .tiltYDegrees = -30}));
+    EXPECT_FALSE(check(PlaceRequest{.what = "white", .tiltXDegrees = 1}));
+    EXPECT_TRUE(check(PlaceRequest{.what = "white", .tiltXDegrees = -0.0}));
+    for (const double tilt : {std::nextafter(30.0, 31.0),
+                              std::numeric_limits<double>::infinity(),
+                              std::numeric_limits<double>::quiet_NaN()}) {
+        EXPECT_EQ(refusal({.what = "mirror", .tiltYDegrees = tilt}), ErrorKind::Usage) << tilt;
+    }
+}
+
+TEST(PlaceRequest, SerialIs1To32PrintableCharacters) {
+    const auto serial = [](const std::string& text) {
+        return static_cast<bool>(check(PlaceRequest{.what = "white", .serial = text}));
+    };
+    EXPECT_TRUE(serial("S"));
+    EXPECT_TRUE(serial(std::string(32, '~')));
+    for (const std::string& bad : {std::string(),
+                                   std::string(33, 'x'),
+                                   std::string("a b"),
+                                   std::string("a\n"),
+                                   std::string("\x7F"),
+                                   std::string("\xC3\xA9")}) {
+        EXPECT_FALSE(serial(bad)) << bad;
+    }
+}
+
+TEST_F(SimPortInStore, IsARigWithNothingUnderItAtFirst) {
+    const auto port = opened();
+    EXPECT_EQ(port->kind(), "sim");
+    EXPECT_EQ(port->placed(), "nothing");
+    EXPECT_EQ(port->simulated(), port.get());
+    const auto rigs = port->list();
+    ASSERT_EQ(rigs->size(), 1U);
+    EXPECT_EQ(rigs->front().serial, "SIM-0001");
+    EXPECT_EQ(rigs->front().kind, "sim");
+    EXPECT_EQ(rigs->front().obstacle, "");
+    const auto transport = port->open();
+    ASSERT_TRUE(transport) << transport.error().message;
+    EXPECT_EQ((*transport)->strings().serial, "SIM-0001");
+}
+
+TEST_F(SimPortInStore, WhatLiesUnderItIsStillThereAfterARestart) {
+    {
+        const auto port = opened();
+        const auto another =
+            port->place({.what = "mirror", .tiltXDegrees = 5, .seed = 7, .serial = "SIM-7"});
+        ASSERT_TRUE(another) << another.error().message;
+        EXPECT_TRUE(*another) << "another seed is another rig";
+    }
+    const auto port = opened();
+    EXPECT_EQ(port->placed(), "mirror");
+    EXPECT_EQ(port->list()->front().serial, "SIM-7");
+    proc::SampleInfo info;
+    port->describe(info);
+    EXPECT_EQ(info.truthSpec, "mirror");
+    EXPECT_EQ(info.extra.at("seed"), "7");
+}
+
+TEST_F(SimPortInStore, AnotherSurfaceIsNotAnotherRig) {
+    const auto port = opened();
+    ASSERT_TRUE(port->open());
+    const auto another = port->place({.what = "model:lambert,albedo=0.5"});
+    ASSERT_TRUE(another) << another.error().message;
+    EXPECT_FALSE(*another);
+    EXPECT_EQ(port->placed(), "model:lambert,albedo=0.5");
+    EXPECT_EQ(port->list()->front().serial, "SIM-0001") << "empty members are kept as they are";
+}
+
+TEST_F(SimPortInStore, WhatIsWrongIsSaidAtOnceAndChangesNothing) {
+    const auto port = opened();
+    EXPECT_EQ(port->place({.what = "model:lambret"}).error().kind, ErrorKind::Usage);
+    EXPECT_EQ(port->place({.what = "sample:none"}).error().kind, ErrorKind::File);
+    EXPECT_EQ(port->place({.what = (folder / "none.bsdf").string()}).error().kind, ErrorKind::File);
+    EXPECT_EQ(port->place({.what = "white", .systematic = "some"}).error().kind, ErrorKind::Usage);
+    EXPECT_EQ(port->place({.what = "model:lambret", .serial = "SIM-9"}).error().kind,
+              ErrorKind::Usage);
+    EXPECT_EQ(port->placed(), "nothing");
+    EXPECT_EQ(port->list()->front().serial, "SIM-0001");
+    EXPECT_FALSE(std::filesystem::exists(folder / "sim.json"));
+}
+
+TEST_F(SimPortInStore, SampleOfTheStoreIsPlacedByWhatItHoldsNotByItsName) {
+    auto store = Store::open(folder.path());
+    ASSERT_TRUE(store) << store.error().message;
+    const auto sample = test::sampleSet([](Radians, const Direction&) { return 0.2; });
+    ASSERT_TRUE(store->addSample({.name = "tile", .rig = "R", .dateUtc = "t"},
+                                 {.file = *proc::encodeGonio(sample), .raw = {}}));
+    const auto port = opened();
+    const auto placed = port->place({.what = "sample:tile"});
+    ASSERT_TRUE(placed) << placed.error().message;
+    EXPECT_EQ(port->placed(), std::filesystem::absolute(store->sample("tile")->file).string());
+}
+
+TEST_F(SimPortInStore, MirrorGoesUnderAnOpenRigOnly) {
+    const auto port = opened();
+    const auto refused = port->placeMirror(proc::mirrorWedges().front());
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().kind, ErrorKind::NoRig);
+    ASSERT_TRUE(port->open());
+    const auto placed = port->placeMirror(proc::mirrorWedges().front());
+    ASSERT_TRUE(placed) << placed.error().message;
+    EXPECT_TRUE(*placed) << "no person has to do it";
+    port->close();
+    EXPECT_FALSE(port->placeMirror(proc::mirrorWedges().front()));
+}
+
+TEST_F(SimPortInStore, BrokenStateIsRefusedAndNamed) {
+    {
+        const auto port = opened();
+        ASSERT_TRUE(port->place({.what = "white"}));
+    }
+    for (const char* text : {"", "[]", "{\"schema\":\"gonio/sim/2\"}", "\xFF"}) {
+        std::ofstream(folder / "sim.json") << text;
+        const auto port = SimPort::open(folder.path());
+        ASSERT_FALSE(port) << text;
+        EXPECT_EQ(port.error().kind, ErrorKind::File);
+        EXPECT_NE(port.error().message.find("sim.json"), std::string::npos);
+    }
+}
+
+}  // namespace
+}  // namespace gonio::daemon

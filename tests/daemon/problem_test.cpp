@@ -1,0 +1,45 @@
+#include "daemon/problem.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+
+namespace gonio::daemon {
+namespace {
+
+constexpr ErrorKind kKinds[] = {ErrorKind::Internal,
+                                ErrorKind::Usage,
+                                ErrorKind::NoRig,
+                                ErrorKind::Busy,
+                                ErrorKind::Device,
+                                ErrorKind::File,
+                                ErrorKind::Quality,
+                                ErrorKind::Interrupted};
+
+TEST(Problem, EveryKindComesBackFromItsName) {
+    std::set<std::string> names;
+    for (const ErrorKind kind : kKinds) {
+        const std::string name(problemName(kind));
+        EXPECT_EQ(problemKind(name), kind) << name;
+        EXPECT_EQ(exitCode(problemKind(name)), exitCode(kind)) << name;
+        names.insert(name);
+    }
+    EXPECT_EQ(names.size(), std::size(kKinds)) << "two kinds share a name";
+}
+
+TEST(Problem, NamesAreThoseOfTheApi) {
+    // Clients and logbooks hold these words: they never change.
+    EXPECT_EQ(problemName(ErrorKind::NoRig), "no-rig");
+    EXPECT_EQ(problemName(ErrorKind::Usage), "usage");
+    EXPECT_EQ(problemName(ErrorKind::Interrupted), "interrupted");
+}
+
+TEST(Problem, UnknownWordIsInternal) {
+    for (const char* word : {"", "Usage", "usage ", "urn:gonio:problem:usage"}) {
+        EXPECT_EQ(problemKind(word), ErrorKind::Internal) << word;
+    }
+}
+
+}  // namespace
+}  // namespace gonio::daemon
