@@ -1,6 +1,7 @@
 // The daemon: owns one rig and one store, and serves them at a UNIX socket until SIGTERM or SIGINT,
 // then ends with the LEDs dark.
 
+#include <malloc.h>
 #include <systemd/sd-daemon.h>
 
 #include <CLI/CLI.hpp>
@@ -62,6 +63,15 @@ Result<std::unique_ptr<RigPort>> openPort(const std::string& rig,
     return std::unique_ptr<RigPort>(std::move(*sim));
 }
 
+/// Pictures come and go by the megabyte: each goes back to the system when it is freed, however
+/// large those before it were, and threads that wait for requests keep no heap of their own.
+void keepMemorySmall() {
+    constexpr int kPictureBytes = 1 << 20;
+    constexpr int kHeaps = 2;
+    mallopt(M_MMAP_THRESHOLD, kPictureBytes);
+    mallopt(M_ARENA_MAX, kHeaps);
+}
+
 Result<void> serve(const DaemonOptions& options) {
     const sigset_t signals = blockSignals();
     const auto store = options.store.empty() ? defaultStore() : options.store;
@@ -116,6 +126,7 @@ struct Arguments {
 };
 
 int run(int argc, char** argv) {
+    keepMemorySmall();
     Arguments arguments;
     try {
         arguments.app.parse(argc, argv);

@@ -179,14 +179,15 @@ Result<RawCapture> captureOf(std::vector<ExrPart>&& parts, std::string_view name
 
 }  // namespace
 
-Result<std::string> encodeGraw(const RawCapture& capture) {
+Result<std::string> encodeGraw(RawCapture capture) {
     std::vector<ExrPart> parts;
     std::set<std::string> names;
-    for (const RawState& state : capture.states) {
+    for (RawState& state : capture.states) {
         if (!names.insert(partName(state)).second) {
             return Error{ErrorKind::Internal, "graw: state " + partName(state) + " is there twice"};
         }
         parts.push_back(partOf(state));
+        state.merged = {};  // 10 MB: not twice in memory
     }
     if (parts.empty()) return Error{ErrorKind::Internal, "graw: the capture has no states"};
     parts.front().text["gonio.schema"] = kRawSchema;

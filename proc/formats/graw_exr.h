@@ -42,7 +42,7 @@ struct RawCapture {
 };
 
 /// Internal error for a capture without states, or with the same state twice.
-[[nodiscard]] Result<std::string> encodeGraw(const RawCapture& capture);
+[[nodiscard]] Result<std::string> encodeGraw(RawCapture capture);
 [[nodiscard]] Result<RawCapture> decodeGraw(std::string_view bytes, std::string_view name);
 
 [[nodiscard]] Result<void> writeGraw(const std::filesystem::path& path, const RawCapture& capture);
