@@ -176,9 +176,10 @@ TEST_F(Lab, MeasuresOnUsbWhatItMeasuresInProcess) {
     const double frames = processorSeconds(daemon.pid()) - before;
     EXPECT_EQ(end(client), 0) << test::textOf(gonio / "client.err");
     const Json measured = Json::parse(test::textOf(gonio / "client.out"));
-    std::cout << "goniod: " << idle << " MiB idle, " << mebibytes(daemon.pid(), "VmHWM:")
-              << " MiB at most; a draft measurement " << measured["rig_seconds"]
-              << " s on the rig, " << measured["compute_seconds"] << " s computing\n";
+    std::cout << "goniod: " << idle << " MiB idle, " << streaming << " MiB taking frames, "
+              << mebibytes(daemon.pid(), "VmHWM:") << " MiB at most; a draft measurement "
+              << measured["rig_seconds"] << " s on the rig, " << measured["compute_seconds"]
+              << " s computing, " << frames << " s of processor time until the last frame\n";
     EXPECT_EQ(csvOf(gonio, "x"), inProcess());
     EXPECT_EQ(daemon.end(), 0) << daemon.log();
     EXPECT_FALSE(lit());
