@@ -27,6 +27,7 @@ constexpr auto kPatience = 30s;
 /// A rig, and the person who puts things under it.
 class Lab : public testing::Test {
 protected:
+    explicit Lab(sim::CameraKind camera = sim::CameraKind::Usb2) : camera_(camera) {}
     void SetUp() override { place("mirror"); }
     void place(const std::string& what, const sim::Wedge& wedge = {}) {
         auto store = daemon::Store::open(gonio / "store");
@@ -81,14 +82,40 @@ protected:
         EXPECT_EQ(answer->status, 202) << answer->body;
     }
 
+    /// The lens map, the mirror put on each wedge as the daemon asks for it.
+    void calibrateMirror() {
+        post("calibrate-mirror");
+        for (const proc::Wedge& wedge : proc::mirrorWedges()) {
+            await("a wish for a mirror", [](const Json& now) {
+                return now["job"].is_object() && now["job"]["wanted"].is_string();
+            });
+            place("mirror", {wedge.aboutX, wedge.aboutY});
+            ask({"jobs", "proceed"});
+        }
+        awaitState("idle");
+        EXPECT_EQ(ask({"jobs"})["jobs"][0]["state"], "done");
+    }
+
+private:
+    sim::CameraKind camera_;
+
+protected:
     test::Program gonio;
     MockBus bus;
     MockRig rig{bus,
                 {.serial = kSerial,
                  .seed = kSeed,
                  .bootCount = 1,
-                 .errors = *sim::ReferenceErrors::parse("none", kSeed)}};
+                 .errors = *sim::ReferenceErrors::parse("none", kSeed),
+                 .camera = camera_}};
 };
+
+class LabUsb3 : public Lab {
+protected:
+    LabUsb3() : Lab(sim::CameraKind::Usb3) {}
+};
+
+constexpr double kMostStreamingMebibytes = 150;
 
 /// A process's resident set, MiB: now ("VmRSS:"), or the largest so far ("VmHWM:").
 double mebibytes(pid_t pid, const std::string& which) {
@@ -150,15 +177,9 @@ TEST_F(Lab, MeasuresOnUsbWhatItMeasuresInProcess) {
     EXPECT_EQ(ask({"rigs"})["rigs"][0]["serial"], kSerial);
     const double idle = mebibytes(daemon.pid(), "VmHWM:");
 
-    post("calibrate-mirror");
-    for (const proc::Wedge& wedge : proc::mirrorWedges()) {
-        await("a wish for a mirror", [](const Json& now) {
-            return now["job"].is_object() && now["job"]["wanted"].is_string();
-        });
-        place("mirror", {wedge.aboutX, wedge.aboutY});
-        ask({"jobs", "proceed"});
-    }
-    awaitState("idle");
+    calibrateMirror();
+    const double streaming = mebibytes(daemon.pid(), "VmHWM:");
+    EXPECT_LE(streaming, kMostStreamingMebibytes);
     for (const std::string tile : {"black", "white"}) {
         place(tile);
         ask({"calibrate", tile});
@@ -166,23 +187,35 @@ TEST_F(Lab, MeasuresOnUsbWhatItMeasuresInProcess) {
     place(kSample);
     const double before = processorSeconds(daemon.pid());
     const pid_t client = begin({"--json", "measure", "x", "--effort", "draft"});
-    double streaming = 0;
+    double measuring = 0;
     await("the end of the frames", [&](const Json& now) {
         if (now["rig"]["state"] == "running") {
-            streaming = std::max(streaming, mebibytes(daemon.pid(), "VmRSS:"));
+            measuring = std::max(measuring, mebibytes(daemon.pid(), "VmRSS:"));
         }
         return now["rig"]["state"] == "finishing";
     });
     const double frames = processorSeconds(daemon.pid()) - before;
     EXPECT_EQ(end(client), 0) << test::textOf(gonio / "client.err");
     const Json measured = Json::parse(test::textOf(gonio / "client.out"));
-    std::cout << "goniod: " << idle << " MiB idle, " << streaming << " MiB taking frames, "
-              << mebibytes(daemon.pid(), "VmHWM:") << " MiB at most; a draft measurement "
-              << measured["rig_seconds"] << " s on the rig, " << measured["compute_seconds"]
-              << " s computing, " << frames << " s of processor time until the last frame\n";
+    std::cout << "goniod: " << idle << " MiB idle, " << streaming << " MiB calibrating the mirror, "
+              << measuring << " MiB measuring, " << mebibytes(daemon.pid(), "VmHWM:")
+              << " MiB at most; a draft measurement " << measured["rig_seconds"]
+              << " s on the rig, " << measured["compute_seconds"] << " s computing, " << frames
+              << " s of processor time until the last frame\n";
     EXPECT_EQ(csvOf(gonio, "x"), inProcess());
     EXPECT_EQ(daemon.end(), 0) << daemon.log();
     EXPECT_FALSE(lit());
+}
+
+TEST_F(LabUsb3, CalibratesTheMirrorAtSixtyFrames) {
+    test::RunningDaemon daemon(
+        gonio, {"--rig", "usb", "--profile", GONIO_SOURCE_DIR "/config/rigs/minidiff-usb3.toml"});
+    awaitState("idle");
+    calibrateMirror();
+    const double streaming = mebibytes(daemon.pid(), "VmHWM:");
+    std::cout << "goniod: " << streaming << " MiB calibrating the mirror over USB 3, "
+              << processorSeconds(daemon.pid()) << " s of processor time\n";
+    EXPECT_LE(streaming, kMostStreamingMebibytes);
 }
 
 TEST_F(Lab, UnpluggedInTheMiddleTheJobIsInterruptedAndTheRigIsFoundAgain) {

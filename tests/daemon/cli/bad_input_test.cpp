@@ -229,8 +229,9 @@ TEST_F(BadInput, BrokenStoreIsNamed) {
 }
 
 TEST_F(BadInput, BrokenProfileIsNamedWithItsKey) {
-    const std::string profile = file(
-        "rig.toml", "schema = \"gonio/rig/1\"\nname = \"x\"\n[sensor]\nelectrons_per_dn = -1\n");
+    const std::string profile = file("rig.toml",
+                                     "schema = \"gonio/rig/1\"\nname = \"x\"\n[camera]\nusb = "
+                                     "2\n[sensor]\nelectrons_per_dn = -1\n");
     expectRefused(gonio.daemon({"--rig", "sim", "--profile", profile}),
                   kFile,
                   {profile, "sensor.electrons_per_dn"});
