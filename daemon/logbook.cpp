@@ -1,5 +1,6 @@
 #include "daemon/logbook.h"
 
+#include <algorithm>
 #include <array>
 
 #include "daemon/problem.h"
@@ -63,6 +64,20 @@ Result<std::vector<Record>> all(const Result<std::vector<SqlRow>>& rows, Make ma
 }
 
 }  // namespace
+
+Result<void> check(const SessionRecord& session) {
+    constexpr std::size_t kLongestName = 128, kLongestNotes = 4096;
+    for (const std::string* text : {&session.name, &session.operatorName}) {
+        const bool printable = std::none_of(text->begin(), text->end(), [](char c) {
+            return static_cast<unsigned char>(c) < ' ' || c == '\x7F';
+        });
+        if (printable && text->size() <= kLongestName) continue;
+        return Error{ErrorKind::Usage,
+                     "session: a name is at most 128 bytes without control characters"};
+    }
+    if (session.notes.size() <= kLongestNotes) return {};
+    return Error{ErrorKind::Usage, "session: notes are at most 4096 bytes"};
+}
 
 std::string_view name(JobState state) { return kStates[static_cast<std::size_t>(state)]; }
 

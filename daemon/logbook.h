@@ -22,6 +22,10 @@ struct SessionRecord {
     std::string closedUtc;  ///< empty: still open
 };
 
+/// Usage error for a name or operator of more than 128 bytes or with control characters, and for
+/// notes of more than 4096 bytes.
+[[nodiscard]] Result<void> check(const SessionRecord& session);
+
 /// Where a job stands. What was running when a daemon ended is found Interrupted by the next.
 enum class JobState {
     Running,

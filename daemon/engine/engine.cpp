@@ -227,6 +227,7 @@ Result<void> Engine::proceed(std::int64_t job) {
 }
 
 Result<SessionRecord> Engine::openSession(const SessionRecord& session) {
+    if (Result<void> good = check(session); !good) return good.error();
     return ask<SessionRecord>([this, wanted = SessionRecord(session)]() mutable {
         wanted.openedUtc = world_.utcNow();
         Result<SessionRecord> opened = logbook_.openSession(std::move(wanted));
@@ -260,7 +261,9 @@ Result<void> Engine::place(const PlaceRequest& request) {
         if (!*another) return {};
         disconnect();
         advance(EngineEvent::Lost, "another simulated rig was chosen");
+        nextTry_ = Nanoseconds(0);
         connect();
+        if (!rig_) return Error{ErrorKind::NoRig, lastObstacle_};
         return {};
     });
 }

@@ -225,9 +225,15 @@ Result<Json> JobRun::verifyWhite() {
             const double ratio =
                 medianRatio(captured->signals[led][index(band)], white->signals[led][index(band)]);
             states.push_back({{"led", led}, {"band", std::string(letter(band))}, {"ratio", ratio}});
-            if (std::abs(ratio - 1) <= worst) continue;  // also takes a NaN for the worst
-            worst = std::isnan(ratio) ? 1 : std::abs(ratio - 1);
-            worstState = "LED " + std::to_string(led) + " " + std::string(letter(band));
+            const std::string state =
+                "LED " + std::to_string(led) + " " + std::string(letter(band));
+            if (std::isnan(ratio)) {
+                return Error{ErrorKind::Quality,
+                             state + ": no cell was seen both now and when white was calibrated"};
+            }
+            if (std::abs(ratio - 1) <= worst) continue;
+            worst = std::abs(ratio - 1);
+            worstState = state;
         }
     }
     if (worst > request_.limit) {

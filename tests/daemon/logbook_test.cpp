@@ -239,5 +239,14 @@ TEST(Logbook, RefusesADatabaseThatIsNone) {
     EXPECT_NE(book.error().message.find("gonio.db"), std::string::npos);
 }
 
+TEST(Logbook, SessionsHaveNamesThatCanBePrinted) {
+    EXPECT_TRUE(check(SessionRecord{.name = std::string(128, 'x')}));
+    EXPECT_FALSE(check(SessionRecord{.name = std::string(129, 'x')}));
+    EXPECT_FALSE(check(SessionRecord{.name = "two\nlines"}));
+    EXPECT_FALSE(check(SessionRecord{.operatorName = "\x1B[2J"}));
+    EXPECT_TRUE(check(SessionRecord{.name = "M\xC3\xBCller", .notes = "two\nlines"}));
+    EXPECT_FALSE(check(SessionRecord{.notes = std::string(4097, 'x')}));
+}
+
 }  // namespace
 }  // namespace gonio::daemon

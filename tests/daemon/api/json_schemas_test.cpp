@@ -214,6 +214,10 @@ TEST_F(ProgramDocuments, OfWrittenFilesConform) {
     expectConforms({"plot", "model:lambert,albedo=0.5", "-o", (gonio / "plots").string()});
 }
 
+TEST_F(ProgramDocuments, OfTheDoctorConforms) {
+    EXPECT_EQ(expectConforms({"doctor"})["findings"].size(), 8U);
+}
+
 TEST_F(ProgramDocuments, OfLossesConform) {
     auto set = test::sampleSet([](Radians, const Direction&) { return 0.5; });
     set.leds.resize(1);  // resampling a table of one incidence is quick
