@@ -1,5 +1,5 @@
-// The daemon: owns one rig and one store, and serves them at a UNIX socket until SIGTERM or SIGINT,
-// then ends with the LEDs dark.
+// The daemon: owns one rig and one store, and serves them at a UNIX socket until SIGTERM, SIGINT or
+// SIGHUP, then ends with the LEDs dark.
 
 #include <malloc.h>
 #include <systemd/sd-daemon.h>
@@ -45,6 +45,7 @@ sigset_t blockSignals() {
     sigemptyset(&signals);
     sigaddset(&signals, SIGTERM);
     sigaddset(&signals, SIGINT);
+    sigaddset(&signals, SIGHUP);  // its terminal is closed
     pthread_sigmask(SIG_BLOCK, &signals, nullptr);
     return signals;
 }

@@ -101,7 +101,11 @@ Result<void> FollowedJob::answerOperator() {
     if (!yes_) {
         std::cerr << wanted_ << ", then press Enter: " << std::flush;
         std::string line;
-        std::getline(std::cin, line);
+        const bool answered = static_cast<bool>(std::getline(std::cin, line));
+        if (!answered && !interrupted()) {  // Ctrl-D is no yes
+            (void)client_.post(at() + "/cancel", "{}");
+            return Error{ErrorKind::Interrupted, wanted_ + ": no answer; the job is cancelled"};
+        }
     }
     wanted_.clear();
     if (interrupted()) return {};
