@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "tests/support/error_kinds.h"
 #include "tests/support/temp_folder.h"
 
 namespace gonio::daemon {
@@ -120,14 +121,7 @@ TEST_F(LogbookInStore, JobKeepsHowItEnded) {
 }
 
 TEST_F(LogbookInStore, EveryKindOfErrorComesBackWithItsJob) {
-    for (const ErrorKind kind : {ErrorKind::Internal,
-                                 ErrorKind::Usage,
-                                 ErrorKind::NoRig,
-                                 ErrorKind::Busy,
-                                 ErrorKind::Device,
-                                 ErrorKind::File,
-                                 ErrorKind::Quality,
-                                 ErrorKind::Interrupted}) {
+    for (const ErrorKind kind : test::kErrorKinds) {
         JobRecord failed = job(begin("measure"));
         failed.state = JobState::Failed;
         failed.error = Error{kind, "why"};

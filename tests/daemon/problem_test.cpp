@@ -5,27 +5,22 @@
 #include <set>
 #include <string>
 
+#include "tests/support/error_kinds.h"
+
 namespace gonio::daemon {
 namespace {
 
-constexpr ErrorKind kKinds[] = {ErrorKind::Internal,
-                                ErrorKind::Usage,
-                                ErrorKind::NoRig,
-                                ErrorKind::Busy,
-                                ErrorKind::Device,
-                                ErrorKind::File,
-                                ErrorKind::Quality,
-                                ErrorKind::Interrupted};
+using test::kErrorKinds;
 
 TEST(Problem, EveryKindComesBackFromItsName) {
     std::set<std::string> names;
-    for (const ErrorKind kind : kKinds) {
+    for (const ErrorKind kind : kErrorKinds) {
         const std::string name(problemName(kind));
         EXPECT_EQ(problemKind(name), kind) << name;
         EXPECT_EQ(exitCode(problemKind(name)), exitCode(kind)) << name;
         names.insert(name);
     }
-    EXPECT_EQ(names.size(), std::size(kKinds)) << "two kinds share a name";
+    EXPECT_EQ(names.size(), std::size(kErrorKinds)) << "two kinds share a name";
 }
 
 TEST(Problem, NamesAreThoseOfTheApi) {

@@ -2,63 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/driver/scripted_rig.h"
+#include "tests/driver/planned_capture.h"
 
 namespace gonio::driver {
 namespace {
 
 using namespace std::chrono_literals;
-using test::Bytes;
-using test::FrameToSend;
-using test::ScriptedRig;
-
-constexpr std::uint64_t kSession = 0x1122334455667788;
-constexpr Window kWindow{.x = 8, .y = 4, .size = {8, 6}, .binning = 1};
-constexpr std::size_t kChunks = 7;  // of a frame of this window: LEADER, 5 x DATA, TRAILER
-
-const CaptureRequest kRequest{.planStep = 5,
-                              .led = 2,
-                              .levels = LedLevels::only(Band::R, 65535),
-                              .exposure = Microseconds(1000),
-                              .frames = 3};
-
-Rig configured(ScriptedRig& device) {
-    auto rig = Rig::open(device, kSession);
-    EXPECT_TRUE(rig) << rig.error().message;
-    EXPECT_TRUE(rig->configure(kWindow));
-    return std::move(*rig);
-}
-
-void expectAsUndisturbed(const Result<Capture>& capture) {
-    ASSERT_TRUE(capture) << capture.error().message;
-    ASSERT_EQ(capture->size(), 3U);
-    int index = 0;
-    for (const Frame& frame : *capture) {
-        EXPECT_EQ(frame.index, index);
-        EXPECT_EQ(frame.captureId >> 16, 5U);
-        EXPECT_EQ(frame.led, 2);
-        EXPECT_EQ(frame.exposure, (Exposure{Microseconds(1000), Nanoseconds(1000260)}));
-        EXPECT_EQ(frame.pixels, test::picture(kWindow.size, index));
-        ++index;
-    }
-}
-
-bool mentions(const Error& error, const std::string& text) {
-    return error.message.find(text) != std::string::npos;
-}
-
-/// Calls `change` with the chunks of the first `times` sends only.
-auto first(int times, std::function<void(std::vector<Bytes>&)> change) {
-    return [times, change](std::vector<Bytes>& chunks) mutable {
-        if (times-- > 0) change(chunks);
-    };
-}
-
-auto drop(std::size_t at) {
-    return [at](std::vector<Bytes>& chunks) {
-        if (at < chunks.size()) chunks.erase(chunks.begin() + static_cast<std::ptrdiff_t>(at));
-    };
-}
+using namespace test;
 
 TEST(Rig, TellsWhoItIs) {
     ScriptedRig device;
@@ -77,7 +27,7 @@ TEST(Rig, TakesFramesAsPlanned) {
     ScriptedRig device;
     Rig rig = configured(device);
     const auto capture = rig.capture(kRequest);
-    expectAsUndisturbed(capture);
+    expectUndisturbed(capture, kRequest);
     EXPECT_EQ(capture->front().captureId, 0x50001U);
     EXPECT_EQ(capture->anomalies, Anomalies{});
     EXPECT_EQ(capture->resends + capture->recaptures + capture->discarded, 0);
@@ -149,7 +99,7 @@ TEST(Rig, EachLostChunkIsAskedForAgain) {
         Rig rig = configured(device);
         device.onStream = first(1, drop(lost));
         const auto capture = rig.capture(kRequest);
-        expectAsUndisturbed(capture);
+        expectUndisturbed(capture, kRequest);
         EXPECT_EQ(capture->resends, 1) << lost;
         EXPECT_EQ(capture->recaptures, 0);
         EXPECT_EQ(device.count(Op::Arm), 1);
@@ -161,7 +111,7 @@ TEST(Rig, BadChunkIsAskedForAgain) {
     Rig rig = configured(device);
     device.onStream = first(1, [](std::vector<Bytes>& chunks) { chunks[3][70] ^= 0x10; });
     const auto capture = rig.capture(kRequest);
-    expectAsUndisturbed(capture);
+    expectUndisturbed(capture, kRequest);
     EXPECT_EQ(capture->resends, 1);
     EXPECT_EQ(capture->anomalies.badPayloads, 1U);
     EXPECT_EQ(rig.anomalies(), capture->anomalies);
@@ -174,7 +124,7 @@ TEST(Rig, FrameThatIsLostWholeIsAskedForAgain) {
         chunks.erase(chunks.begin() + kChunks, chunks.begin() + 2 * kChunks);
     });
     const auto capture = rig.capture(kRequest);
-    expectAsUndisturbed(capture);
+    expectUndisturbed(capture, kRequest);
     EXPECT_EQ(capture->resends, 1);
     EXPECT_EQ(capture->anomalies.lostChunks, kChunks);
 }
@@ -188,7 +138,7 @@ TEST(Rig, CapturesAgainWhenResendsDoNotHelp) {
         chunks[at].back() ^= 1;
     });
     const auto capture = rig.capture(kRequest);
-    expectAsUndisturbed(capture);
+    expectUndisturbed(capture, kRequest);
     EXPECT_EQ(capture->resends, 2);
     EXPECT_EQ(capture->recaptures, 1);
     EXPECT_EQ((*capture)[0].captureId, 0x50001U) << "kept";
@@ -201,7 +151,7 @@ TEST(Rig, CapturesAgainWhenTheFrameIsGone) {
     device.refuse[Op::Resend] = status::kFrameGone;
     device.onStream = first(1, drop(2));
     const auto capture = rig.capture(kRequest);
-    expectAsUndisturbed(capture);
+    expectUndisturbed(capture, kRequest);
     EXPECT_EQ(capture->recaptures, 1);
 }
 
@@ -210,7 +160,7 @@ TEST(Rig, DoesNotAskARigThatCannotResend) {
     device.ident.capabilities = 0;
     Rig rig = configured(device);
     device.onStream = first(1, drop(2));
-    expectAsUndisturbed(rig.capture(kRequest));
+    expectUndisturbed(rig.capture(kRequest), kRequest);
     EXPECT_EQ(device.count(Op::Resend), 0);
 }
 
@@ -221,7 +171,7 @@ TEST(Rig, IgnoresChunksOfAnEarlierCapture) {
          test::toChunks({.captureId = 0x40001, .pixels = test::picture(kWindow.size, 9)}, 1))
         device.stream.push_back(std::move(chunk));
     const auto capture = rig.capture(kRequest);
-    expectAsUndisturbed(capture);
+    expectUndisturbed(capture, kRequest);
     EXPECT_EQ(capture->anomalies.stale, kChunks);
 }
 
@@ -233,7 +183,7 @@ TEST(Rig, DiscardsAndReplacesFramesFromBeforeTheSettings) {
         if (frame.leader.frameNumber < 3) frame.leader.led = 0;  // still the old one
     };
     const auto capture = rig.capture(kRequest);
-    expectAsUndisturbed(capture);
+    expectUndisturbed(capture, kRequest);
     EXPECT_EQ(capture->discarded, 2);
     EXPECT_EQ(capture->recaptures, 0) << "being early is no fault";
 }
@@ -245,7 +195,7 @@ TEST(Rig, WrongLeaderIsCapturedAgain) {
         if (frame.leader.frameNumber == 2) frame.leader.ledLevel[0] = 1;
     };
     const auto capture = rig.capture(kRequest);
-    expectAsUndisturbed(capture);
+    expectUndisturbed(capture, kRequest);
     EXPECT_EQ(capture->recaptures, 1);
 }
 
@@ -429,298 +379,6 @@ TEST(Rig, KeepsTheHeartbeatWhileItsCallerIsBusy) {
     }
     EXPECT_GT(device.count(Op::Ping), before);
     EXPECT_LT(device.longestSilence, 2s);
-}
-
-// ---- armed ahead
-
-const CaptureRequest kNext{.planStep = 6,
-                           .led = 1,
-                           .levels = LedLevels::only(Band::B, 30000),
-                           .exposure = Microseconds(2000),
-                           .frames = 2};
-
-void expectTheNextAsUndisturbed(const Result<Capture>& capture) {
-    ASSERT_TRUE(capture) << capture.error().message;
-    ASSERT_EQ(capture->size(), 2U);
-    int index = 0;
-    for (const Frame& frame : *capture) {
-        EXPECT_EQ(frame.index, index);
-        EXPECT_EQ(frame.captureId >> 16, 6U);
-        EXPECT_EQ(frame.led, 1);
-        EXPECT_EQ(frame.levels, kNext.levels);
-        EXPECT_EQ(frame.exposure.requested, Microseconds(2000));
-        EXPECT_EQ(frame.pixels, test::picture(kWindow.size, index));
-        ++index;
-    }
-}
-
-std::vector<Op> operations(const ScriptedRig& device, std::size_t from = 0) {
-    std::vector<Op> list;
-    for (std::size_t i = from; i < device.log.size(); ++i) list.push_back(device.log[i].op);
-    return list;
-}
-
-/// Counts the sends of each ARM and RESEND, and changes those of one of them.
-auto at(int send, std::function<void(std::vector<Bytes>&)> change) {
-    return [send, change](std::vector<Bytes>& chunks) mutable {
-        if (send-- == 0) change(chunks);
-    };
-}
-
-TEST(Rig, ArmsTheNextCaptureAsSoonAsTheLastFrameIsExposed) {
-    ScriptedRig device;
-    Rig rig = configured(device);
-    std::vector<std::size_t> unread;
-    device.onStream = [&](std::vector<Bytes>&) { unread.push_back(device.stream.size()); };
-    const std::size_t from = device.log.size();
-    expectAsUndisturbed(rig.capture(kRequest, {kNext}));
-    const std::vector<Op> serial{Op::SetLed, Op::SetExposure, Op::Arm};
-    std::vector<Op> both = serial;
-    both.insert(both.end(), serial.begin(), serial.end());
-    EXPECT_EQ(operations(device, from), both);
-    EXPECT_EQ(unread, (std::vector<std::size_t>{0, kChunks - 1})) << "all but the LEADER";
-    expectTheNextAsUndisturbed(rig.capture(kNext));
-    EXPECT_EQ(operations(device, from), both) << "nothing more was needed";
-    EXPECT_EQ(rig.anomalies(), Anomalies{});
-}
-
-TEST(Rig, EachCaptureMayArmTheNext) {
-    ScriptedRig device;
-    Rig rig = configured(device);
-    CaptureRequest request = kRequest;
-    for (int i = 0; i < 20; ++i) {
-        CaptureRequest next = request;
-        ++next.planStep;
-        const auto capture = rig.capture(request, {next});
-        ASSERT_TRUE(capture) << capture.error().message;
-        EXPECT_EQ(capture->front().captureId, request.planStep << 16 | 1);
-        request = next;
-    }
-    EXPECT_EQ(device.count(Op::Arm), 21);
-    EXPECT_EQ(device.count(Op::Abort), 0);
-    EXPECT_EQ(rig.anomalies(), Anomalies{});
-}
-
-TEST(Rig, LostChunkOfACaptureWithTheNextArmedIsRepaired) {
-    for (std::size_t lost = 0; lost < 3 * kChunks; ++lost) {
-        ScriptedRig device;
-        Rig rig = configured(device);
-        device.onStream = first(1, drop(lost));
-        const auto capture = rig.capture(kRequest, {kNext});
-        expectAsUndisturbed(capture);
-        EXPECT_EQ(capture->resends, 1) << lost;
-        expectTheNextAsUndisturbed(rig.capture(kNext));
-        EXPECT_EQ(device.count(Op::Arm), 2) << lost;
-        EXPECT_EQ(device.count(Op::Abort), 0);
-    }
-}
-
-TEST(Rig, LostChunkOfACaptureArmedAheadIsRepaired) {
-    for (std::size_t lost = 0; lost < 2 * kChunks; ++lost) {
-        ScriptedRig device;
-        Rig rig = configured(device);
-        device.onStream = at(1, drop(lost));
-        expectAsUndisturbed(rig.capture(kRequest, {kNext}));
-        const auto next = rig.capture(kNext);
-        expectTheNextAsUndisturbed(next);
-        EXPECT_EQ(next->resends, 1) << lost;
-        EXPECT_EQ(device.count(Op::Arm), 2) << lost;
-    }
-}
-
-TEST(Rig, CaptureArmedAheadShowsThatTheLastFrameIsLostWithoutWaiting) {
-    ScriptedRig device;
-    Rig rig = configured(device);
-    // Of the last frame the LEADER comes, then the next capture's.
-    device.onStream = first(1, [](std::vector<Bytes>& chunks) { chunks.resize(2 * kChunks + 1); });
-    const Nanoseconds begin = device.clock().now();
-    expectAsUndisturbed(rig.capture(kRequest, {kNext}));
-    EXPECT_LT(device.clock().now() - begin, 100ms);
-    expectTheNextAsUndisturbed(rig.capture(kNext));
-}
-
-TEST(Rig, RecaptureWithTheNextArmedTakesBothAgain) {
-    ScriptedRig device;
-    Rig rig = configured(device);
-    device.refuse[Op::Resend] = status::kFrameGone;
-    device.onStream = first(1, drop(2 * kChunks + 3));
-    const auto capture = rig.capture(kRequest, {kNext});
-    expectAsUndisturbed(capture);
-    EXPECT_EQ(capture->recaptures, 1);
-    EXPECT_EQ((*capture)[2].captureId, 0x50002U);
-    const auto next = rig.capture(kNext);
-    expectTheNextAsUndisturbed(next);
-    EXPECT_EQ(next->front().captureId, 0x60002U) << "nothing of the first arming is used";
-    EXPECT_EQ(device.count(Op::Arm), 4);
-}
-
-TEST(Rig, NothingIsArmedAheadOfACaptureThatHasToBeTakenAgain) {
-    ScriptedRig device;
-    Rig rig = configured(device);
-    device.onFrame = [](FrameToSend& frame) {
-        if (frame.leader.frameNumber == 1) frame.leader.led = 3;
-    };
-    expectAsUndisturbed(rig.capture(kRequest, {kNext}));
-    EXPECT_EQ(device.count(Op::Arm), 3) << "the request twice, the next once";
-}
-
-TEST(Rig, OtherRequestThanTheOneArmedAheadIsTakenSerially) {
-    ScriptedRig device;
-    Rig rig = configured(device);
-    CaptureRequest other = kNext;
-    other.levels = LedLevels::only(Band::G, 30000);
-    expectAsUndisturbed(rig.capture(kRequest, {other}));
-    const std::size_t from = device.log.size();
-    const auto capture = rig.capture(kNext);
-    expectTheNextAsUndisturbed(capture);
-    EXPECT_EQ(capture->front().captureId, 0x60002U);
-    EXPECT_EQ(operations(device, from),
-              (std::vector<Op>{Op::Abort, Op::Flush, Op::SetLed, Op::SetExposure, Op::Arm}));
-    EXPECT_EQ(rig.anomalies(), Anomalies{}) << "flushed, not lost";
-}
-
-TEST(Rig, WhatIsNotWantedAnyMoreIsAborted) {
-    const auto after = [](auto call) {
-        ScriptedRig device;
-        Rig rig = configured(device);
-        EXPECT_TRUE(rig.capture(kRequest, {kNext}));
-        const std::size_t from = device.log.size();
-        call(rig);
-        EXPECT_EQ(device.led.levels, (std::array<std::uint16_t, 3>{}));
-        EXPECT_TRUE(device.stream.empty());
-        return operations(device, from);
-    };
-    EXPECT_EQ(after([](Rig& rig) { EXPECT_TRUE(rig.darken()); }),
-              (std::vector<Op>{Op::Abort, Op::Flush, Op::SetLed}));
-    EXPECT_EQ(after([](Rig& rig) { EXPECT_TRUE(rig.close()); }),
-              (std::vector<Op>{Op::Abort, Op::Flush, Op::SetLed}));
-    EXPECT_EQ(after([](Rig& rig) { EXPECT_TRUE(rig.configure(kWindow)); }),
-              (std::vector<Op>{Op::Abort, Op::Flush, Op::SetFormat}));
-    EXPECT_EQ(after([](Rig& rig) { EXPECT_FALSE(rig.capture({.frames = 99})); }),
-              (std::vector<Op>{Op::Abort, Op::Flush}));
-}
-
-TEST(Rig, CapturesSeriallyAfterWhatWasArmedAheadIsAborted) {
-    ScriptedRig device;
-    Rig rig = configured(device);
-    ASSERT_TRUE(rig.capture(kRequest, {kNext}));
-    ASSERT_TRUE(rig.darken());
-    expectTheNextAsUndisturbed(rig.capture(kNext));
-    EXPECT_EQ(device.count(Op::Arm), 3);
-}
-
-TEST(Rig, WhatTheRigRefusesAheadIsSaidByItsOwnCapture) {
-    ScriptedRig device;
-    Rig rig = configured(device);
-    device.onStream = first(1, [&](std::vector<Bytes>&) {
-        device.refuse[Op::SetLed] = status::kInterlock;  // opened while it exposes
-    });
-    expectAsUndisturbed(rig.capture(kRequest, {kNext}));
-    const auto next = rig.capture(kNext);
-    ASSERT_FALSE(next);
-    EXPECT_EQ(next.error().deviceStatus, status::kInterlock);
-    EXPECT_EQ(device.led.levels, (std::array<std::uint16_t, 3>{}));
-}
-
-TEST(Rig, RigThatIsNotIdleYetIsArmedSerially) {
-    ScriptedRig device;
-    Rig rig = configured(device);
-    device.onStream = at(0, [&](std::vector<Bytes>&) {
-        device.refuse[Op::Arm] = status::kBadState;  // it still reads its sensor out
-    });
-    expectAsUndisturbed(rig.capture(kRequest, {kNext}));
-    device.refuse.clear();
-    expectTheNextAsUndisturbed(rig.capture(kNext));
-    EXPECT_EQ(device.count(Op::Abort), 0);
-}
-
-TEST(Rig, SilenceWhileArmingAheadIsAnErrorWithinItsDeadline) {
-    ScriptedRig device;
-    Rig rig = configured(device);
-    device.onStream = first(1, [&](std::vector<Bytes>&) { device.deaf = true; });
-    const auto capture = rig.capture(kRequest, {kNext});
-    ASSERT_FALSE(capture);
-    EXPECT_TRUE(mentions(capture.error(), "armed ahead, capture step 6 (LED 1"))
-        << capture.error().message;
-    EXPECT_TRUE(mentions(capture.error(), "no ACK"));
-    EXPECT_LE(device.clock().now(), 2s);
-}
-
-TEST(Rig, AbortedFrameOfACaptureArmedAheadIsItsOwnError) {
-    ScriptedRig device;
-    Rig rig = configured(device);
-    device.onStream = at(1, [](std::vector<Bytes>& chunks) {
-        ChunkHeader header = decodeChunk(chunks[0])->header;
-        header.type = ChunkType::Aborted;
-        header.chunkCount = 0;
-        const Aborted why{.reason = status::kInterlock, .frameNumber = 4};
-        chunks = {encodeChunk(header, encode(why))};
-    });
-    expectAsUndisturbed(rig.capture(kRequest, {kNext}));
-    const auto next = rig.capture(kNext);
-    ASSERT_FALSE(next);
-    EXPECT_EQ(next.error().deviceStatus, status::kInterlock);
-}
-
-TEST(Rig, EarlyFramesOfACaptureArmedAheadAreReplaced) {
-    ScriptedRig device;
-    Rig rig = configured(device);
-    device.onStream = at(0, [&](std::vector<Bytes>&) { device.latency = 2; });
-    device.onFrame = [](FrameToSend& frame) {
-        const bool early = frame.leader.frameNumber == 4 || frame.leader.frameNumber == 5;
-        if (early) frame.leader.led = 2;  // still the present capture's
-    };
-    expectAsUndisturbed(rig.capture(kRequest, {kNext}));
-    const auto next = rig.capture(kNext);
-    expectTheNextAsUndisturbed(next);
-    EXPECT_EQ(next->discarded, 2);
-}
-
-TEST(Rig, NothingIsArmedAheadOfTheDark) {
-    ScriptedRig device;
-    Rig rig = configured(device);
-    CaptureRequest last = kRequest;
-    last.keepLit = false;
-    EXPECT_TRUE(rig.capture(last, {kNext}));
-    EXPECT_EQ(device.led, SetLed{});
-    EXPECT_EQ(device.count(Op::Arm), 1);
-    EXPECT_EQ(device.count(Op::Abort), 0);
-}
-
-TEST(Rig, RigThatKeepsFewFramesIsArmedSerially) {
-    for (const std::uint16_t kept : {std::uint16_t{2}, std::uint16_t{3}}) {
-        ScriptedRig device;
-        device.ident.frameRam = kept;
-        Rig rig = configured(device);
-        expectAsUndisturbed(rig.capture(kRequest, {kNext}));
-        EXPECT_EQ(device.count(Op::Arm), kept == 2 ? 1 : 2);
-        expectTheNextAsUndisturbed(rig.capture(kNext));
-    }
-}
-
-TEST(Rig, RefusesANextRequestOutOfItsDomain) {
-    ScriptedRig device;
-    Rig rig = configured(device);
-    CaptureRequest next = kNext;
-    next.led = 4;
-    const std::size_t from = device.log.size();
-    const auto capture = rig.capture(kRequest, {next});
-    ASSERT_FALSE(capture);
-    EXPECT_EQ(capture.error().kind, ErrorKind::Usage);
-    EXPECT_TRUE(mentions(capture.error(), "armed ahead")) << capture.error().message;
-    EXPECT_EQ(device.log.size(), from) << "nothing was sent";
-}
-
-TEST(Rig, AnErrorWithTheNextArmedLeavesTheLedsDark) {
-    ScriptedRig device;
-    Rig rig = configured(device);
-    device.refuse[Op::Resend] = status::kInternal;
-    device.onStream = first(1, drop(2 * kChunks + 3));
-    ASSERT_FALSE(rig.capture(kRequest, {kNext}));
-    EXPECT_EQ(device.count(Op::Arm), 2);
-    EXPECT_EQ(device.led.levels, (std::array<std::uint16_t, 3>{}));
-    device.refuse.clear();
-    expectTheNextAsUndisturbed(rig.capture(kNext));
 }
 
 TEST(Rig, ACaptureIsARangeOfItsFrames) {

@@ -13,6 +13,7 @@
 #include "tests/daemon/engine/running_engine.h"
 #include "tests/daemon/engine/test_rig.h"
 #include "tests/formats/small_files.h"
+#include "tests/support/error_kinds.h"
 #include "tests/support/json_schema.h"
 #include "tests/support/sample_sets.h"
 
@@ -155,14 +156,7 @@ TEST(ApiDocument, OfWhatLiesUnderTheSimulatedRigConforms) {
 
 TEST(ProblemDocument, OfEveryKindConforms) {
     const JsonSchema schema("problem");
-    for (const ErrorKind kind : {ErrorKind::Internal,
-                                 ErrorKind::Usage,
-                                 ErrorKind::NoRig,
-                                 ErrorKind::Busy,
-                                 ErrorKind::Device,
-                                 ErrorKind::File,
-                                 ErrorKind::Quality,
-                                 ErrorKind::Interrupted}) {
+    for (const ErrorKind kind : test::kErrorKinds) {
         EXPECT_EQ(schema.complaints(Json::parse(problem({kind, "why"}).body)), "");
     }
 }
