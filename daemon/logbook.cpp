@@ -81,6 +81,10 @@ Result<void> check(const SessionRecord& session) {
 
 std::string_view name(JobState state) { return kStates[static_cast<std::size_t>(state)]; }
 
+std::string titleOf(const JobRecord& job) {
+    return job.kind + (job.name.empty() ? "" : " " + job.name);
+}
+
 Result<Logbook> Logbook::open(const std::filesystem::path& root) {
     Result<Database> database = openStoreDatabase(root);
     if (!database) return database.error();

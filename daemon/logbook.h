@@ -47,6 +47,9 @@ struct JobRecord {
     std::string result;          ///< the document that came of it, JSON
 };
 
+/// What a person calls it: "measure metal".
+[[nodiscard]] std::string titleOf(const JobRecord& job);
+
 struct EventRecord {
     std::uint64_t id = 0;  ///< ascending, also over restarts
     std::string dateUtc;

@@ -12,23 +12,15 @@ namespace {
 using namespace std::chrono_literals;
 using Json = nlohmann::ordered_json;
 
-constexpr auto kPause = 250ms;          // between two looks at an idle rig: heartbeat / 8
-constexpr Nanoseconds kRescan = 500ms;  // PROTOCOL.md 4
-constexpr Nanoseconds kRetryHeld = 2s;  // held by another, or no permission
-constexpr std::uint64_t kReservedSteps = 1 << 16;  // no job takes more captures
-constexpr std::uint64_t kReservedNumbers = 1000;   // of events: some jobs
+constexpr auto kPause = 250ms;                    // between two looks at an idle rig: heartbeat / 8
+constexpr std::uint64_t kReservedNumbers = 1000;  // of events: some jobs
 constexpr const char* kLastNumber = "event-number";
 
 std::string dump(const Json& json) {
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-std::string titleOf(const JobRecord& job) {
-    return job.kind + (job.name.empty() ? "" : " " + job.name);
-}
-
 Error stopping() { return {ErrorKind::Busy, "the daemon is stopping"}; }
-Error cancelled(const std::string& job) { return {ErrorKind::Interrupted, job + ": cancelled"}; }
 Error busyWith(const JobRecord& job) {
     return {ErrorKind::Busy,
             "the rig is busy with " + titleOf(job) +
@@ -36,95 +28,6 @@ Error busyWith(const JobRecord& job) {
 }
 
 }  // namespace
-
-// ---- the job that runs ----
-
-/// Tells everyone how the job at hand goes on, and the job when it has to end.
-class Engine::Monitor : public JobMonitor {
-public:
-    Monitor(Engine& engine, const std::stop_token& stop, std::string job)
-        : engine_(engine), stop_(stop), job_(std::move(job)), watch_(engine.world_.clock) {}
-
-    void begin(int steps) override {
-        engine_.publish([&](EngineStatus& status) { status.job->steps = steps; });
-    }
-    Result<void> step(const std::string& what) override {
-        engine_.world_.alive();
-        tell(what);
-        if (!wished()) return {};
-        ended_ = true;
-        return cancelled(job_);
-    }
-    Result<void> ask(const std::string& what) override;
-    void captured() override { engine_.advance(EngineEvent::Captured); }
-    void computing() override { engine_.world_.alive(); }
-
-    /// How a job that did not succeed has ended.
-    [[nodiscard]] JobState verdict() const {
-        if (!ended_) return JobState::Failed;
-        return stop_.stop_requested() ? JobState::Interrupted : JobState::Cancelled;
-    }
-
-private:
-    void tell(const std::string& what);
-    [[nodiscard]] bool wished() const {
-        const std::scoped_lock lock(engine_.mutex_);
-        return stop_.stop_requested() || engine_.wish_ == Wish::Cancel;
-    }
-    /// An answer counts from the moment on at which the question can be seen.
-    std::int64_t prompt(const std::string& what) {
-        const std::scoped_lock lock(engine_.mutex_);
-        if (engine_.wish_ == Wish::Proceed) engine_.wish_ = Wish::None;
-        engine_.status_.job->prompt = what;
-        return engine_.status_.job->record.id;
-    }
-
-    Engine& engine_;
-    const std::stop_token& stop_;
-    std::string job_;
-    Stopwatch watch_;
-    bool ended_ = false;
-};
-
-void Engine::Monitor::tell(const std::string& what) {
-    JobStatus now;
-    engine_.publish([&](EngineStatus& status) {
-        JobStatus& job = *status.job;
-        job.step = std::min(job.step + 1, job.steps);
-        job.what = what;
-        job.elapsed = watch_.elapsed();
-        job.left = job.elapsed * (job.steps - job.step) / std::max(1, job.step);
-        now = job;
-    });
-    engine_.tell("progress",
-                 dump({{"job", now.record.id},
-                       {"step", now.step},
-                       {"steps", now.steps},
-                       {"what", what},
-                       {"elapsed_s", now.elapsed.count()},
-                       {"left_s", now.left->count()}}),
-                 false);
-}
-
-Result<void> Engine::Monitor::ask(const std::string& what) {
-    const std::int64_t job = prompt(what);
-    engine_.tell("operator", dump({{"job", job}, {"wanted", what}}), true);
-    while (true) {
-        engine_.world_.alive();
-        if (Result<void> there = engine_.rig_->keepAlive(); !there) return there;
-        std::unique_lock lock(engine_.mutex_);
-        engine_.asked_.wait_for(lock, kPause, [&] { return engine_.wish_ != Wish::None; });
-        if (stop_.stop_requested() || engine_.wish_ == Wish::Cancel) {
-            ended_ = true;
-            return cancelled(job_);
-        }
-        if (engine_.wish_ == Wish::Proceed) {
-            lock.unlock();
-            prompt({});
-            return {};
-        }
-    }
-}
 
 // ---- asking the owner ----
 
@@ -275,12 +178,6 @@ EngineStatus Engine::status() const {
 
 // ---- what the owner tells ----
 
-template <class Change>
-void Engine::publish(Change change) {
-    const std::scoped_lock lock(mutex_);
-    change(status_);
-}
-
 void Engine::publishCalibrations() {
     std::vector<CalibrationDate> dates;
     for (const std::string kind : {"mirror", "black", "white"}) {
@@ -330,152 +227,7 @@ void Engine::advance(EngineEvent event, const std::string& detail) {
          *to != EngineState::Running && *to != EngineState::Finishing);
 }
 
-// ---- the rig ----
-
-void Engine::connect() {
-    if (rig_ || world_.clock.now() < nextTry_) return;
-    const Result<void> claimed = claim();
-    if (claimed) return;
-    const Error& why = claimed.error();
-    disconnect();
-    advance(EngineEvent::Lost, why.message);
-    nextTry_ = world_.clock.now() + (why.kind == ErrorKind::Busy ? kRetryHeld : kRescan);
-    if (why.message != lastObstacle_) log::warning(why.message);
-    lastObstacle_ = why.message;
-    publish([&](EngineStatus& status) { status.obstacle = why.message; });
-}
-
-Result<void> Engine::claim() {
-    const Result<driver::Transport*> transport = port_.open();
-    if (!transport) return transport.error();
-    const std::string serial = (*transport)->strings().serial;
-    publish([&](EngineStatus& status) {
-        status.serial = serial;
-        status.placed = port_.placed();
-    });
-    advance(EngineEvent::Appeared);
-    // The same number again takes up the claim of a daemon that was killed a moment ago.
-    const std::string key = "claim/" + serial;
-    const Result<std::string> kept = logbook_.setting(key);
-    if (!kept) return kept.error();
-    std::uint64_t id = static_cast<std::uint64_t>(parseInteger(*kept).value_or(0));
-    if (id == 0) {
-        id = world_.randomId();
-        const auto set = logbook_.set(key, std::to_string(static_cast<std::int64_t>(id)));
-        if (!set) return set;
-    }
-    auto rig = driver::Rig::open(**transport, id);
-    if (!rig) return rig.error();
-    rig_.emplace(std::move(*rig));
-    lastObstacle_.clear();
-    publish([](EngineStatus& status) { status.obstacle.clear(); });
-    publishCalibrations();
-    advance(EngineEvent::Claimed);
-    log::info("rig " + serial + " is claimed");
-    return {};
-}
-
-void Engine::disconnect() {
-    rig_.reset();
-    port_.close();
-    publish([](EngineStatus& status) { status.rig.reset(); });
-}
-
-void Engine::lost(const Error& why) {
-    log::warning(why.message);
-    lastObstacle_ = why.message;
-    disconnect();
-    advance(EngineEvent::Lost, why.message);
-    publish([&](EngineStatus& status) { status.obstacle = why.message; });
-    nextTry_ = world_.clock.now() + kRescan;
-}
-
-/// Feeds the heartbeat, and follows what the rig says of itself.
-void Engine::tend() {
-    if (!rig_) return connect();
-    if (Result<void> there = rig_->keepAlive(); !there) return lost(there.error());
-    const std::optional<driver::Status> said = rig_->link().status();
-    publish([&](EngineStatus& status) { status.rig = said; });
-    if (!said) return;
-    if (said->state == driver::RigState::Fault) {
-        advance(EngineEvent::FaultSeen, driver::statusName(said->fault));
-        // Refused while its cause lasts, and dark afterwards all the same.
-        if (rig_->link().command(driver::Op::ClearFault)) advance(EngineEvent::FaultCleared);
-    } else {
-        advance(EngineEvent::FaultCleared);
-    }
-}
-
-// ---- jobs ----
-
-/// The first of the plan steps that are the next job's alone, however this one ends.
-Result<std::uint64_t> Engine::reserveSteps() {
-    const std::string key = "plan-step/" + status().serial;
-    const Result<std::string> kept = logbook_.setting(key);
-    if (!kept) return kept.error();
-    const auto first = static_cast<std::uint64_t>(parseInteger(*kept).value_or(1));
-    const auto set = logbook_.set(key, std::to_string(first + kReservedSteps));
-    if (!set) return set.error();
-    return first;
-}
-
-Result<std::string> Engine::runOn(const JobRequest& request, Monitor& monitor) {
-    Result<std::uint64_t> step = reserveSteps();
-    if (!step) return step.error();
-    const EngineStatus now = status();
-    const JobBench bench{.rig = *rig_,
-                         .port = port_,
-                         .store = store_,
-                         .profile = profile_,
-                         .computer = world_.clock,
-                         .nextPlanStep = *step,
-                         .session = now.session ? now.session->name : "",
-                         .utcNow = world_.utcNow,
-                         .monitor = monitor};
-    Result<std::string> outcome = runJob(bench, request);
-    const auto returned = logbook_.set("plan-step/" + now.serial, std::to_string(*step));
-    if (!returned) log::warning(returned.error().message);
-    return outcome;
-}
-
-/// How it ended, and whether the rig is still there.
-void Engine::settle(JobRecord& job, const Result<std::string>& outcome, const Monitor& monitor) {
-    job.endedUtc = world_.utcNow();
-    if (outcome) {
-        job.state = JobState::Done;
-        job.result = *outcome;
-        return;
-    }
-    job.error = outcome.error();
-    job.state = monitor.verdict();
-    if (const auto there = rig_->status(); !there) {
-        job.state = JobState::Interrupted;
-        lost(outcome.error());
-    } else if (const auto dark = rig_->darken(); !dark) {
-        log::warning(dark.error().message);
-    }
-}
-
-void Engine::runPending(const std::stop_token& stop) {
-    if (!pending_) return;
-    Pending job = std::move(*pending_);
-    pending_.reset();
-    const std::string what = titleOf(job.record);
-    log::info("job " + std::to_string(job.record.id) + ": " + what);
-    advance(EngineEvent::JobBegun);
-    Monitor monitor(*this, stop, what);
-    const Result<std::string> outcome = runOn(job.request, monitor);
-    settle(job.record, outcome, monitor);
-    if (job.record.error) log::warning(job.record.error->message);
-    if (Result<void> kept = logbook_.endJob(job.record); !kept) log::error(kept.error().message);
-    publishCalibrations();
-    {
-        const std::scoped_lock lock(mutex_);
-        status_.job.reset();
-    }
-    advance(EngineEvent::JobEnded);
-    tellJob(job.record);
-}
+// ---- life ----
 
 void Engine::run(const std::stop_token& stop) {
     const std::stop_callback wake(stop, [this] { asked_.notify_all(); });
@@ -489,8 +241,6 @@ void Engine::run(const std::stop_token& stop) {
     disconnect();
     events_.close();
 }
-
-// ---- life ----
 
 Engine::Engine(Store store,
                Logbook logbook,

@@ -140,7 +140,10 @@ private:
     void tell(const std::string& type, const std::string& json, bool kept);
     void tellJob(const JobRecord& job);
     template <class Change>
-    void publish(Change change);
+    void publish(Change change) {
+        const std::scoped_lock lock(mutex_);
+        change(status_);
+    }
     void publishCalibrations();
 
     Store store_;

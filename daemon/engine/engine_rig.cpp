@@ -1,0 +1,91 @@
+// The engine's rig: looked for, claimed, tended, lost and found again.
+
+#include "daemon/engine/engine.h"
+#include "proc/core/log.h"
+#include "proc/core/number_text.h"
+
+namespace gonio::daemon {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Nanoseconds kRescan = 500ms;  // PROTOCOL.md 4
+constexpr Nanoseconds kRetryHeld = 2s;  // held by another, or no permission
+
+}  // namespace
+
+void Engine::connect() {
+    if (rig_ || world_.clock.now() < nextTry_) return;
+    const Result<void> claimed = claim();
+    if (claimed) return;
+    const Error& why = claimed.error();
+    disconnect();
+    advance(EngineEvent::Lost, why.message);
+    nextTry_ = world_.clock.now() + (why.kind == ErrorKind::Busy ? kRetryHeld : kRescan);
+    if (why.message != lastObstacle_) log::warning(why.message);
+    lastObstacle_ = why.message;
+    publish([&](EngineStatus& status) { status.obstacle = why.message; });
+}
+
+Result<void> Engine::claim() {
+    const Result<driver::Transport*> transport = port_.open();
+    if (!transport) return transport.error();
+    const std::string serial = (*transport)->strings().serial;
+    publish([&](EngineStatus& status) {
+        status.serial = serial;
+        status.placed = port_.placed();
+    });
+    advance(EngineEvent::Appeared);
+    // The same number again takes up the claim of a daemon that was killed a moment ago.
+    const std::string key = "claim/" + serial;
+    const Result<std::string> kept = logbook_.setting(key);
+    if (!kept) return kept.error();
+    std::uint64_t id = static_cast<std::uint64_t>(parseInteger(*kept).value_or(0));
+    if (id == 0) {
+        id = world_.randomId();
+        const auto set = logbook_.set(key, std::to_string(static_cast<std::int64_t>(id)));
+        if (!set) return set;
+    }
+    auto rig = driver::Rig::open(**transport, id);
+    if (!rig) return rig.error();
+    rig_.emplace(std::move(*rig));
+    lastObstacle_.clear();
+    publish([](EngineStatus& status) { status.obstacle.clear(); });
+    publishCalibrations();
+    advance(EngineEvent::Claimed);
+    log::info("rig " + serial + " is claimed");
+    return {};
+}
+
+void Engine::disconnect() {
+    rig_.reset();
+    port_.close();
+    publish([](EngineStatus& status) { status.rig.reset(); });
+}
+
+void Engine::lost(const Error& why) {
+    log::warning(why.message);
+    lastObstacle_ = why.message;
+    disconnect();
+    advance(EngineEvent::Lost, why.message);
+    publish([&](EngineStatus& status) { status.obstacle = why.message; });
+    nextTry_ = world_.clock.now() + kRescan;
+}
+
+/// Feeds the heartbeat, and follows what the rig says of itself.
+void Engine::tend() {
+    if (!rig_) return connect();
+    if (Result<void> there = rig_->keepAlive(); !there) return lost(there.error());
+    const std::optional<driver::Status> said = rig_->link().status();
+    publish([&](EngineStatus& status) { status.rig = said; });
+    if (!said) return;
+    if (said->state == driver::RigState::Fault) {
+        advance(EngineEvent::FaultSeen, driver::statusName(said->fault));
+        // Refused while its cause lasts, and dark afterwards all the same.
+        if (rig_->link().command(driver::Op::ClearFault)) advance(EngineEvent::FaultCleared);
+    } else {
+        advance(EngineEvent::FaultCleared);
+    }
+}
+
+}  // namespace gonio::daemon
