@@ -7,25 +7,14 @@
 // for the task.
 
 #include <chrono>
-#include <exception>
 #include <future>
-#include <string>
 #include <type_traits>
 #include <utility>
 
+#include "daemon/guarded.h"
 #include "driver/rig.h"
 
 namespace gonio::daemon {
-
-/// Result<T> for a task that returns T or Result<T>.
-template <class Answer>
-struct AsResult {
-    using Type = Result<Answer>;
-};
-template <class Value>
-struct AsResult<Result<Value>> {
-    using Type = Result<Value>;
-};
 
 template <class Value>
 class Alongside {
@@ -35,7 +24,9 @@ public:
     explicit Alongside(Task task)
         // Either policy: where no thread can be had, the task runs in await().
         : answer_(std::async(std::launch::async | std::launch::deferred,
-                             [task = std::move(task)]() mutable { return run(task); })) {}
+                             [task = std::move(task)]() mutable -> Result<Value> {
+                                 return guarded("beside the rig", task);
+                             })) {}
 
     /// Waits, keeps the rig alive meanwhile, and calls `waiting` as often. Once.
     template <class Waiting>
@@ -54,20 +45,6 @@ public:
 private:
     // The rig wants a PING at least every heartbeat / 4, 500 ms as the link claims it.
     static constexpr std::chrono::milliseconds kFeeding{200};
-
-    template <class Task>
-    static Result<Value> run(Task& task) {
-        try {
-            if constexpr (std::is_void_v<std::invoke_result_t<Task&>>) {
-                task();
-                return {};
-            } else {
-                return task();
-            }
-        } catch (const std::exception& e) {
-            return Error{ErrorKind::Internal, std::string("beside the rig: ") + e.what()};
-        }
-    }
 
     std::future<Result<Value>> answer_;
 };

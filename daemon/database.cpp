@@ -5,7 +5,7 @@
 namespace gonio::daemon {
 namespace {
 
-constexpr int kBusyMilliseconds = 5000;
+constexpr int kBusyMilliseconds = 1000;  // half a rig's heartbeat
 
 struct Finalize {
     void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
@@ -50,36 +50,55 @@ Error Database::failed(std::string_view what) const {
                 sqlite3_errmsg(handle_.get())};
 }
 
-Result<Database> Database::open(const std::filesystem::path& file,
-                                const std::vector<std::string>& migrations) {
+Result<Database> Database::connect(const std::filesystem::path& file, int flags) {
     sqlite3* raw = nullptr;
-    const int opened =
-        sqlite3_open_v2(file.c_str(), &raw, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr);
+    const int opened = sqlite3_open_v2(file.c_str(), &raw, flags, nullptr);
     Database database(std::unique_ptr<sqlite3, Close>(raw), file);
     if (opened != SQLITE_OK) return database.failed("open");
     sqlite3_busy_timeout(raw, kBusyMilliseconds);
-    const Result<void> set = database.execute(
-        "PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL; PRAGMA foreign_keys=ON;");
-    if (!set) return set.error();
-    if (Result<void> done = database.migrate(migrations); !done) return done.error();
     return database;
 }
 
+Result<Database> Database::open(const std::filesystem::path& file,
+                                const std::vector<std::string>& migrations) {
+    Result<Database> database = connect(file, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
+    if (!database) return database;
+    const Result<void> set = database->execute(
+        "PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL; PRAGMA foreign_keys=ON;");
+    if (!set) return set.error();
+    if (Result<void> done = database->migrate(migrations); !done) return done.error();
+    return database;
+}
+
+Result<Database> Database::openToRead(const std::filesystem::path& file, std::size_t version) {
+    Result<Database> database = connect(file, SQLITE_OPEN_READONLY);
+    if (!database) return database;
+    const Result<std::size_t> seen = database->version();
+    if (!seen) return seen.error();
+    if (*seen != version) return database->otherVersion(*seen, version);
+    return database;
+}
+
+Result<std::size_t> Database::version() {
+    const auto rows = run("PRAGMA user_version");
+    if (!rows) return rows.error();
+    return static_cast<std::size_t>(integerOf(rows->front().front()));
+}
+
+Error Database::otherVersion(std::size_t seen, std::size_t known) const {
+    const bool newer = seen > known;
+    return {ErrorKind::File,
+            "store: " + file_.string() + ": made by " + (newer ? "a newer" : "an older") +
+                " gonio (schema " + std::to_string(seen) + ", this one knows " +
+                std::to_string(known) + ")" +
+                (newer ? "" : "; start goniod on it once, which brings it up to date")};
+}
+
 Result<void> Database::migrate(const std::vector<std::string>& migrations) {
-    const auto version = [&]() -> Result<std::size_t> {
-        const auto rows = run("PRAGMA user_version");
-        if (!rows) return rows.error();
-        return static_cast<std::size_t>(integerOf(rows->front().front()));
-    };
     const Result<std::size_t> seen = version();
     if (!seen) return seen.error();
     if (*seen == migrations.size()) return {};  // without the writers' lock
-    if (*seen > migrations.size()) {
-        return Error{ErrorKind::File,
-                     "store: " + file_.string() + ": made by a newer gonio (schema " +
-                         std::to_string(*seen) + ", this one knows " +
-                         std::to_string(migrations.size()) + ")"};
-    }
+    if (*seen > migrations.size()) return otherVersion(*seen, migrations.size());
     return transaction([&]() -> Result<void> {
         const Result<std::size_t> now = version();  // another may have been quicker
         if (!now) return now.error();

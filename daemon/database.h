@@ -1,7 +1,7 @@
 #pragma once
 // The only door to SQLite: one database file in WAL mode with synchronous=FULL, so that a committed
 // transaction survives power loss. Failures become Errors that name the file; a database held by
-// another for more than five seconds is Busy.
+// another for more than a second is Busy: a writer that has a rig must come back to it.
 
 #include <cstdint>
 #include <filesystem>
@@ -29,6 +29,10 @@ public:
     /// a newer program.
     [[nodiscard]] static Result<Database> open(const std::filesystem::path& file,
                                                const std::vector<std::string>& migrations);
+    /// Changes nothing, and needs no right to write where another program has it open. File error
+    /// when it is not there, or when its schema is not of version `version`.
+    [[nodiscard]] static Result<Database> openToRead(const std::filesystem::path& file,
+                                                     std::size_t version);
 
     /// One statement; `values` take the places of its question marks. The rows it gives.
     Result<std::vector<SqlRow>> run(std::string_view statement, const SqlRow& values = {});
@@ -41,6 +45,9 @@ private:
     };
     Database(std::unique_ptr<sqlite3, Close> handle, std::filesystem::path file)
         : handle_(std::move(handle)), file_(std::move(file)) {}
+    [[nodiscard]] static Result<Database> connect(const std::filesystem::path& file, int flags);
+    [[nodiscard]] Result<std::size_t> version();
+    [[nodiscard]] Error otherVersion(std::size_t seen, std::size_t known) const;
     [[nodiscard]] Error failed(std::string_view what) const;
     Result<void> execute(const std::string& script);
     Result<void> migrate(const std::vector<std::string>& migrations);

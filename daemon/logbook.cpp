@@ -91,6 +91,12 @@ Result<Logbook> Logbook::open(const std::filesystem::path& root) {
     return Logbook(std::move(*database));
 }
 
+Result<Logbook> Logbook::openToRead(const std::filesystem::path& root) {
+    Result<Database> database = openStoreToRead(root);
+    if (!database) return database.error();
+    return Logbook(std::move(*database));
+}
+
 Result<SessionRecord> Logbook::openSession(SessionRecord session) {
     if (session.name.empty()) session.name = session.openedUtc;
     const Result<void> done = database_.transaction([&]() -> Result<void> {
@@ -118,15 +124,15 @@ Result<SessionRecord> Logbook::openSession(SessionRecord session) {
 }
 
 Result<SessionRecord> Logbook::closeSession(const std::string& dateUtc) {
-    const auto open = currentSession();
-    if (!open) return open.error();
-    if (!*open) return Error{ErrorKind::Usage, "no session is open; open one: gonio session new"};
-    SessionRecord session = **open;
-    session.closedUtc = dateUtc;
-    const auto closed = database_.run("UPDATE sessions SET closed = ? WHERE id = ?",
-                                      {session.closedUtc, session.id});
+    const auto closed = database_.run(
+        "UPDATE sessions SET closed = ? WHERE closed IS NULL "
+        "RETURNING id, name, operator, notes, opened, closed",
+        {dateUtc});
     if (!closed) return closed.error();
-    return session;
+    if (closed->empty()) {
+        return Error{ErrorKind::Usage, "no session is open; open one: gonio session new"};
+    }
+    return sessionOf(closed->front());
 }
 
 Result<std::optional<SessionRecord>> Logbook::currentSession() {
@@ -163,16 +169,22 @@ Result<void> Logbook::endJob(const JobRecord& job) {
 }
 
 Result<std::vector<JobRecord>> Logbook::interruptJobs(const std::string& dateUtc) {
-    auto found = all<JobRecord>(database_.run(with(kJobs, "WHERE state = 'running'")), jobOf);
-    if (!found) return found.error();
-    for (JobRecord& job : *found) {
-        job.state = JobState::Interrupted;
-        job.endedUtc = dateUtc;
-        job.error = Error{ErrorKind::Interrupted,
-                          job.kind + ": the daemon ended in the middle of it; start it again"};
-        if (Result<void> kept = endJob(job); !kept) return kept.error();
-    }
-    return found;
+    std::vector<JobRecord> interrupted;
+    const Result<void> done = database_.transaction([&]() -> Result<void> {
+        auto found = all<JobRecord>(database_.run(with(kJobs, "WHERE state = 'running'")), jobOf);
+        if (!found) return found.error();
+        for (JobRecord& job : *found) {
+            job.state = JobState::Interrupted;
+            job.endedUtc = dateUtc;
+            job.error = Error{ErrorKind::Interrupted,
+                              job.kind + ": the daemon ended in the middle of it; start it again"};
+            if (Result<void> kept = endJob(job); !kept) return kept;
+        }
+        interrupted = std::move(*found);
+        return {};
+    });
+    if (!done) return done.error();
+    return interrupted;
 }
 
 Result<JobRecord> Logbook::job(std::int64_t id) {

@@ -61,6 +61,8 @@ class Logbook {
 public:
     /// The store at `root` is there.
     [[nodiscard]] static Result<Logbook> open(const std::filesystem::path& root);
+    /// For those who only look. File error when there is no store.
+    [[nodiscard]] static Result<Logbook> openToRead(const std::filesystem::path& root);
 
     /// Usage error when one is open, or when there was one of that name. Without a name it gets its
     /// date's.

@@ -34,7 +34,7 @@ Result<Material> openMaterial(const std::string& f, const std::filesystem::path&
     }
     std::filesystem::path file = f;
     if (f.starts_with(kSample)) {
-        Result<Store> opened = Store::open(store);
+        Result<Store> opened = Store::openToRead(store);
         if (!opened) return opened.error();
         const auto record = opened->sample(f.substr(kSample.size()));
         if (!record) return record.error();

@@ -60,7 +60,7 @@ Json toJson(const proc::Budget& budget) {
 Result<LensRecord> takeLens(const Bench& bench, const PlaceMirror& place) {
     const Result<Window> window = configureWindow(bench.rig);
     if (!window) return window.error();
-    Sequencer sequencer(bench.rig, bench.profile, bench.nextPlanStep);
+    Sequencer sequencer(bench.rig, bench.profile, bench.nextPlanStep, bench.alive);
     const Result<proc::DarkLibrary> darks = takeDarks(bench, sequencer, kMirrorFrames);
     if (!darks) return darks.error();
     const std::vector<Radians> leds = bench.rig.identify().ledAngles;
@@ -102,7 +102,7 @@ Result<Captured> capturePlacement(const Bench& bench,
                                   int darkFrames) {
     const Result<Window> window = configureWindow(bench.rig);
     if (!window) return window.error();
-    Sequencer sequencer(bench.rig, bench.profile, bench.nextPlanStep);
+    Sequencer sequencer(bench.rig, bench.profile, bench.nextPlanStep, bench.alive);
     const Result<proc::DarkLibrary> darks = takeDarks(bench, sequencer, darkFrames);
     if (!darks) return darks.error();
     const Stopwatch preparing(bench.clock);

@@ -28,6 +28,8 @@ struct Bench {
     const Clock& clock;  ///< of the computer, for compute seconds
     /// One step of progress is done; an error that it returns ends the measurement.
     std::function<Result<void>(const std::string&)> step;
+    /// It goes on: every few seconds at least, between two steps.
+    std::function<void()> alive = [] {};
 };
 
 /// The window that is read: the square in the middle of the sensor.

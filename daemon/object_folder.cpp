@@ -3,14 +3,10 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
-#include <csignal>
 #include <cstring>
-#include <utility>
 
 #include "daemon/digest.h"
-#include "proc/core/number_text.h"
 
 namespace gonio::daemon {
 namespace {
@@ -67,15 +63,6 @@ fs::path halfOf(const fs::path& path) {
     return half;
 }
 
-/// Is this NAME.PID.half of a process that is no more?
-bool isLeftOver(const fs::path& path) {
-    if (path.extension() != kHalf) return false;
-    const std::string number = path.stem().extension().string();
-    const auto pid =
-        parseInteger(std::string_view(number).substr(std::min<std::size_t>(1, number.size())));
-    return pid && ::kill(static_cast<pid_t>(*pid), 0) != 0 && errno == ESRCH;
-}
-
 Result<void> makeFolder(const fs::path& folder) {
     std::error_code error;
     if (!fs::is_directory(folder, error)) fs::create_directories(folder, error);
@@ -90,11 +77,18 @@ Result<void> makeFolder(const fs::path& folder) {
 
 Result<ObjectFolder> ObjectFolder::open(const fs::path& folder) {
     if (Result<void> made = makeFolder(folder); !made) return made.error();
-    std::error_code ignored;
-    for (const auto& entry : fs::recursive_directory_iterator(folder, ignored)) {
-        if (isLeftOver(entry.path())) fs::remove(entry.path(), ignored);
-    }
     return ObjectFolder(folder);
+}
+
+Result<void> ObjectFolder::sweep() const {
+    std::error_code failedAt, ignored;
+    for (fs::recursive_directory_iterator it(folder_, failedAt), end; !failedAt && it != end;
+         it.increment(failedAt)) {
+        if (it->path().extension() == kHalf) fs::remove(it->path(), ignored);
+    }
+    if (!failedAt) return {};
+    errno = failedAt.value();
+    return failed("cannot look through", folder_);
 }
 
 Result<std::string> ObjectFolder::put(std::string_view bytes, std::string_view extension) const {

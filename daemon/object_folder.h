@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "proc/core/result.h"
 
@@ -14,15 +15,19 @@ namespace gonio::daemon {
 
 class ObjectFolder {
 public:
-    /// Made when it is not there; what a run that died left half written is taken away.
+    /// Made when it is not there.
     [[nodiscard]] static Result<ObjectFolder> open(const std::filesystem::path& folder);
+    /// To look for what is in it; nothing is made.
+    explicit ObjectFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+    /// Takes away what a run that died left half written. Nobody else may be writing.
+    Result<void> sweep() const;
 
     /// The name: 64 hexadecimal digits and the extension (".gonio").
     [[nodiscard]] Result<std::string> put(std::string_view bytes, std::string_view extension) const;
     [[nodiscard]] std::filesystem::path pathOf(const std::string& name) const;
 
 private:
-    explicit ObjectFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
     std::filesystem::path folder_;
 };
 

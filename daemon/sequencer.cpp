@@ -30,10 +30,14 @@ BracketPlan sampleBracket(Effort effort) {
     return {};
 }
 
-Sequencer::Sequencer(driver::Rig& rig, const RigProfile& profile, std::uint64_t& nextPlanStep)
+Sequencer::Sequencer(driver::Rig& rig,
+                     const RigProfile& profile,
+                     std::uint64_t& nextPlanStep,
+                     std::function<void()> alive)
     : rig_(rig),
       profile_(profile),
       nextPlanStep_(nextPlanStep),
+      alive_(std::move(alive)),
       leds_(static_cast<int>(rig.identify().ledAngles.size())) {}
 
 std::vector<State> Sequencer::states() const {
@@ -66,12 +70,18 @@ driver::CaptureRequest Sequencer::prepare(State state, const BracketPlan& plan) 
     return *prepared_;
 }
 
+Result<driver::Capture> Sequencer::take(const driver::CaptureRequest& request,
+                                        const driver::ArmAhead& ahead) {
+    alive_();
+    return rig_.capture(request, ahead);
+}
+
 Result<std::vector<Frame>> Sequencer::expose(State state,
                                              double level,
                                              Microseconds exposure,
                                              int frames) {
     Result<driver::Capture> capture =
-        rig_.capture(numbered(toTake(state, {.level = level, .exposure = exposure}, frames)));
+        take(numbered(toTake(state, {.level = level, .exposure = exposure}, frames)));
     if (!capture) return capture.error();
     return std::move(capture->frames);
 }
@@ -89,7 +99,7 @@ Result<std::vector<Frame>> Sequencer::bracket(State state,
         if (next.outlook == Outlook::Shot)
             ahead.next = numbered(toTake(state, next.shot, plan.frames));
         if (next.outlook == Outlook::Over && then) ahead.next = prepare(*then, plan);
-        Result<driver::Capture> capture = rig_.capture(wanted, ahead);
+        Result<driver::Capture> capture = take(wanted, ahead);
         if (!capture) return capture.error();
         ladder.seen(capture->frames);
         std::move(capture->frames.begin(), capture->frames.end(), std::back_inserter(all));
@@ -112,7 +122,7 @@ Result<std::vector<proc::DarkFrame>> Sequencer::darks(int frames,
     for (std::size_t i = 0; i < requests.size(); ++i) {
         driver::ArmAhead ahead;
         if (i + 1 < requests.size()) ahead.next = requests[i + 1];
-        const auto taken = rig_.capture(requests[i], ahead);
+        const auto taken = take(requests[i], ahead);
         if (!taken) return taken.error();
         Result<proc::DarkFrame> dark = proc::averageDark(taken->frames, profile_.noise);
         if (!dark) return dark.error();

@@ -28,7 +28,12 @@ struct State {
 class Sequencer {
 public:
     /// `rig` must be configured; it, the profile and the counter must outlive the sequencer.
-    Sequencer(driver::Rig& rig, const RigProfile& profile, std::uint64_t& nextPlanStep);
+    /// `alive` is called before each capture.
+    Sequencer(
+        driver::Rig& rig,
+        const RigProfile& profile,
+        std::uint64_t& nextPlanStep,
+        std::function<void()> alive = [] {});
 
     /// LEDs x R, G, B, in this order.
     [[nodiscard]] std::vector<State> states() const;
@@ -51,10 +56,13 @@ private:
     [[nodiscard]] driver::CaptureRequest numbered(driver::CaptureRequest request);
     [[nodiscard]] driver::CaptureRequest begin(driver::CaptureRequest first);
     [[nodiscard]] driver::CaptureRequest prepare(State state, const BracketPlan& plan);
+    [[nodiscard]] Result<driver::Capture> take(const driver::CaptureRequest& request,
+                                               const driver::ArmAhead& ahead = {});
 
     driver::Rig& rig_;
     const RigProfile& profile_;
     std::uint64_t& nextPlanStep_;
+    std::function<void()> alive_;
     int leds_;
     std::optional<driver::CaptureRequest> prepared_;  ///< the next bracket's first
 };

@@ -11,6 +11,18 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kRawExtension = ".graw";
+constexpr const char* kObjects = "objects";
+
+/// Absolute: others, who work in other folders, are told of its files.
+Result<fs::path> rootOf(const fs::path& chosen) {
+    const fs::path root = chosen.empty() ? defaultStore() : chosen;
+    std::error_code failed;
+    fs::path absolute = fs::absolute(root, failed).lexically_normal();
+    if (failed) {
+        return Error{ErrorKind::Usage, "store: " + root.string() + ": " + failed.message()};
+    }
+    return absolute;
+}
 
 }  // namespace
 
@@ -45,20 +57,32 @@ Result<void> checkSampleName(std::string_view name) {
 }
 
 Result<Store> Store::open(const fs::path& chosen) {
-    const fs::path root = chosen.empty() ? defaultStore() : chosen;
+    Result<fs::path> root = rootOf(chosen);
+    if (!root) return root.error();
     std::error_code failed;
-    fs::create_directories(root, failed);
+    fs::create_directories(*root, failed);
     if (failed) {
         return Error{ErrorKind::Busy,
-                     "store: cannot make " + root.string() + ": " + failed.message() +
+                     "store: cannot make " + root->string() + ": " + failed.message() +
                          "; choose another place with --store DIR"};
     }
-    Result<ObjectFolder> objects = ObjectFolder::open(root / "objects");
+    Result<ObjectFolder> objects = ObjectFolder::open(*root / kObjects);
     if (!objects) return objects.error();
-    Result<Database> database = openStoreDatabase(root);
+    Result<Database> database = openStoreDatabase(*root);
     if (!database) return database.error();
-    return Store(root, std::move(*objects), std::move(*database));
+    return Store(std::move(*root), std::move(*objects), std::move(*database));
 }
+
+Result<Store> Store::openToRead(const fs::path& chosen) {
+    Result<fs::path> root = rootOf(chosen);
+    if (!root) return root.error();
+    Result<Database> database = openStoreToRead(*root);
+    if (!database) return database.error();
+    ObjectFolder objects(*root / kObjects);
+    return Store(std::move(*root), std::move(objects), std::move(*database));
+}
+
+Result<void> Store::sweep() { return objects_.sweep(); }
 
 fs::path Store::pathOf(const SqlValue& object) const {
     const std::string name = textOf(object);
@@ -124,16 +148,24 @@ Result<Store::Added> Store::addSample(SampleRecord record, const Contents& conte
     return Added{std::move(record), movedTo};
 }
 
-Result<SampleRecord> Store::sample(const std::string& name) {
+Result<std::optional<SampleRecord>> Store::find(const std::string& name) {
     const auto rows = database_.run(
         "SELECT name, rig, date, session, file, raw FROM samples WHERE name = ?", {name});
     if (!rows) return rows.error();
-    if (rows->empty()) {
-        return Error{
-            ErrorKind::File,
+    if (rows->empty()) return std::optional<SampleRecord>();
+    return std::optional(sampleOf(rows->front()));
+}
+
+Result<SampleRecord> Store::sample(const std::string& name) {
+    auto found = find(name);
+    if (!found) return found.error();
+    if (!*found) return noSample(name);
+    return std::move(**found);
+}
+
+Error Store::noSample(const std::string& name) const {
+    return {ErrorKind::File,
             "sample:" + name + ": the store " + root_.string() + " has no sample of this name"};
-    }
-    return sampleOf(rows->front());
 }
 
 Result<std::vector<SampleRecord>> Store::samples() {

@@ -52,6 +52,10 @@ class Store {
 public:
     /// Empty: defaultStore(). Made when it is not there.
     [[nodiscard]] static Result<Store> open(const std::filesystem::path& chosen);
+    /// For those who only look: changes nothing. File error when there is no store.
+    [[nodiscard]] static Result<Store> openToRead(const std::filesystem::path& chosen);
+    /// Takes away what a run that died left half written; for the only one who writes.
+    Result<void> sweep();
 
     [[nodiscard]] const std::filesystem::path& root() const { return root_; }
     [[nodiscard]] std::filesystem::path simState() const { return root_ / "sim.json"; }
@@ -63,8 +67,10 @@ public:
         std::string movedTo;
     };
     [[nodiscard]] Result<Added> addSample(SampleRecord record, const Contents& contents);
+    [[nodiscard]] Result<std::optional<SampleRecord>> find(const std::string& name);
     /// File error when there is none.
     [[nodiscard]] Result<SampleRecord> sample(const std::string& name);
+    [[nodiscard]] Error noSample(const std::string& name) const;
     /// By name.
     [[nodiscard]] Result<std::vector<SampleRecord>> samples();
 

@@ -6,6 +6,8 @@
 namespace gonio::daemon {
 namespace {
 
+constexpr const char* kFile = "gonio.db";
+
 const std::vector<std::string> kMigrations{
     R"(
     CREATE TABLE samples(
@@ -33,7 +35,18 @@ const std::vector<std::string> kMigrations{
 }  // namespace
 
 Result<Database> openStoreDatabase(const std::filesystem::path& root) {
-    return Database::open(root / "gonio.db", kMigrations);
+    return Database::open(root / kFile, kMigrations);
+}
+
+Result<Database> openStoreToRead(const std::filesystem::path& root) {
+    std::error_code failed;
+    if (!std::filesystem::exists(root / kFile, failed)) {
+        return Error{failed ? ErrorKind::Busy : ErrorKind::File,
+                     "store: " + root.string() + ": " +
+                         (failed ? failed.message() : "there is none") +
+                         "; choose another with --store DIR"};
+    }
+    return Database::openToRead(root / kFile, kMigrations.size());
 }
 
 }  // namespace gonio::daemon

@@ -10,5 +10,7 @@ namespace gonio::daemon {
 
 /// gonio.db of the store at `root`, which is there.
 [[nodiscard]] Result<Database> openStoreDatabase(const std::filesystem::path& root);
+/// The same, for those who only look. File error when there is no store.
+[[nodiscard]] Result<Database> openStoreToRead(const std::filesystem::path& root);
 
 }  // namespace gonio::daemon

@@ -49,6 +49,8 @@ if(TARGET gonio)
     install(FILES ${CMAKE_BINARY_DIR}/goniod.service COMPONENT program
         DESTINATION lib/systemd/system)
     install(FILES config/linux/70-gonio.rules COMPONENT program DESTINATION lib/udev/rules.d)
+    install(FILES config/linux/gonio.sysusers COMPONENT program DESTINATION lib/sysusers.d
+        RENAME gonio.conf)
     install(FILES config/goniod.toml COMPONENT program
         DESTINATION ${CMAKE_INSTALL_SYSCONFDIR}/gonio)
     install(FILES docs/install.md COMPONENT program DESTINATION ${CMAKE_INSTALL_DOCDIR})

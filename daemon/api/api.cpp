@@ -22,7 +22,9 @@ constexpr int kJobsListed = 100;
 constexpr int kAccepted = 202;
 constexpr int kNotFound = 404;
 constexpr int kMethodNotAllowed = 405;
+constexpr int kConflict = 409;
 constexpr int kUnsupportedType = 415;
+constexpr int kUnprocessable = 422;
 
 int httpStatus(ErrorKind kind) {
     switch (kind) {
@@ -31,7 +33,7 @@ int httpStatus(ErrorKind kind) {
         case ErrorKind::NoRig: return 503;
         case ErrorKind::Busy: return 409;
         case ErrorKind::Device: return 502;
-        case ErrorKind::File: return 404;
+        case ErrorKind::File: return 500;  // the store, or the disk under it
         case ErrorKind::Quality: return 422;
         case ErrorKind::Interrupted: return 409;
     }
@@ -55,8 +57,8 @@ public:
     std::optional<double> number(const std::string& name) {
         return take<double>(name, &Json::is_number, "a number", false);
     }
-    std::optional<std::uint64_t> whole(const std::string& name) {
-        return take<std::uint64_t>(name, &Json::is_number_unsigned, "a whole number", false);
+    std::optional<std::uint64_t> whole(const std::string& name, bool needed = false) {
+        return take<std::uint64_t>(name, &Json::is_number_unsigned, "a whole number", needed);
     }
     std::optional<std::string> optionalText(const std::string& name) {
         return take<std::string>(name, &Json::is_string, "a text", false);
@@ -120,8 +122,8 @@ Json listed(const std::vector<Record>& records) {
 }
 
 /// What is kept is read over a connection of the reader's own; the writer is not disturbed.
-Result<Store> reading(const Call& call) { return Store::open(call.engine.storeRoot()); }
-Result<Logbook> logbook(const Call& call) { return Logbook::open(call.engine.storeRoot()); }
+Result<Store> reading(const Call& call) { return Store::openToRead(call.engine.storeRoot()); }
+Result<Logbook> logbook(const Call& call) { return Logbook::openToRead(call.engine.storeRoot()); }
 
 Result<std::int64_t> jobNumber(const Call& call) {
     const auto number = parseInteger(call.names.front());
@@ -155,10 +157,15 @@ Result<ApiReply> getSamples(const Call& call) {
     return reply("samples", {{"samples", listed(*samples)}});
 }
 
-Result<SampleRecord> sampleOf(const Call& call) {
+/// What `use` makes of the sample that the path names.
+template <class Use>
+Result<ApiReply> withSample(const Call& call, Use use) {
     Result<Store> store = reading(call);
     if (!store) return store.error();
-    return store->sample(call.names.front());
+    const auto sample = store->find(call.names.front());
+    if (!sample) return sample.error();
+    if (!*sample) return problem(store->noSample(call.names.front()), kNotFound);
+    return use(**sample);
 }
 
 Result<ApiReply> fileReply(const std::filesystem::path& file, const std::string& type) {
@@ -170,15 +177,11 @@ Result<ApiReply> fileReply(const std::filesystem::path& file, const std::string&
 constexpr const char* kBytes = "application/octet-stream";
 
 Result<ApiReply> getSampleFile(const Call& call) {
-    const auto sample = sampleOf(call);
-    if (!sample) return sample.error();
-    return fileReply(sample->file, kBytes);
+    return withSample(call, [](const SampleRecord& it) { return fileReply(it.file, kBytes); });
 }
 
 Result<ApiReply> getSampleRaw(const Call& call) {
-    const auto sample = sampleOf(call);
-    if (!sample) return sample.error();
-    return fileReply(sample->raw, kBytes);
+    return withSample(call, [](const SampleRecord& it) { return fileReply(it.raw, kBytes); });
 }
 
 /// The band that ?band= names, which a format with one file for each needs, and no other takes.
@@ -203,11 +206,13 @@ Result<ApiReply> getSampleExport(const Call& call) {
     if (!format) return format.error();
     const auto band = wantedBand(call, *format);
     if (!band) return band.error();
-    const auto surface = openMaterial("sample:" + call.names.front(), call.engine.storeRoot());
-    if (!surface) return surface.error();
-    auto files = exportAs(*surface, *format, *band);
-    if (!files) return files.error();
-    return ApiReply{.type = kBytes, .body = std::move(files->front().bytes)};
+    return withSample(call, [&](const SampleRecord& it) -> Result<ApiReply> {
+        const auto surface = openMaterial(it.file.string(), call.engine.storeRoot());
+        if (!surface) return surface.error();
+        auto files = exportAs(*surface, *format, *band);
+        if (!files) return files.error();
+        return ApiReply{.type = kBytes, .body = std::move(files->front().bytes)};
+    });
 }
 
 Result<ApiReply> getJobs(const Call& call) {
@@ -258,15 +263,27 @@ Result<ApiReply> postJob(const Call& call) {
     return reply("job", toJson(*begun), kAccepted);
 }
 
-Result<ApiReply> postJobWish(const Call& call, Result<void> (Engine::*wish)(std::int64_t)) {
+/// A job that is not the running one, or does not ask this, was so a moment ago.
+ApiReply wished(std::int64_t job, const Result<void>& done) {
+    if (!done) return problem(done.error(), kConflict);
+    return reply("job-wish", {{"id", job}}, kAccepted);
+}
+
+Result<ApiReply> postCancel(const Call& call) {
     const auto number = jobNumber(call);
     if (!number) return number.error();
     if (Result<void> good = nothingIn(call.request.body); !good) return good.error();
-    if (Result<void> done = (call.engine.*wish)(*number); !done) return done.error();
-    return reply("job-wish", {{"id", *number}}, kAccepted);
+    return wished(*number, call.engine.cancel(*number));
 }
-Result<ApiReply> postCancel(const Call& call) { return postJobWish(call, &Engine::cancel); }
-Result<ApiReply> postProceed(const Call& call) { return postJobWish(call, &Engine::proceed); }
+
+Result<ApiReply> postProceed(const Call& call) {
+    const auto number = jobNumber(call);
+    if (!number) return number.error();
+    Fields fields(call.request.body);
+    const std::uint64_t question = fields.whole("question", true).value_or(0);
+    if (Result<void> good = fields.verdict(); !good) return good.error();
+    return wished(*number, call.engine.proceed(*number, question));
+}
 
 Result<ApiReply> postSession(const Call& call) {
     Fields fields(call.request.body);
@@ -295,7 +312,11 @@ Result<ApiReply> postPlace(const Call& call) {
                              .serial = fields.optionalText("serial"),
                              .systematic = fields.optionalText("systematic")};
     if (Result<void> good = fields.verdict(); !good) return good.error();
-    if (Result<void> done = call.engine.place(place); !done) return done.error();
+    if (Result<void> done = call.engine.place(place); !done) {
+        // A file that is not there, or no BRDF: the request's fault, not the store's.
+        const bool named = done.error().kind == ErrorKind::File;
+        return named ? Result<ApiReply>(problem(done.error(), kUnprocessable)) : done.error();
+    }
     return reply("sim-place",
                  {{"serial", call.engine.status().serial},
                   {"placed", place.what},

@@ -32,7 +32,8 @@ Json runningJob(const JobStatus& job) {
     json["step"] = job.step;
     json["steps"] = job.steps;
     json["what"] = orNull(job.what);
-    json["wanted"] = orNull(job.prompt);
+    json["question"] = job.question ? Json(job.question->number) : Json(nullptr);
+    json["wanted"] = job.question ? Json(job.question->wanted) : Json(nullptr);
     json["elapsed_s"] = job.elapsed.count();
     json["left_s"] = job.left ? Json(job.left->count()) : Json(nullptr);
     return json;

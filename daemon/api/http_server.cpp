@@ -7,6 +7,7 @@
 #include <atomic>
 #include <thread>
 
+#include "daemon/guarded.h"
 #include "proc/core/log.h"
 #include "proc/core/number_text.h"
 
@@ -82,7 +83,7 @@ private:
     Result<std::vector<EventRecord>> remembered() {
         const std::uint64_t oldest = engine_.events().oldest();
         if (after_ + 1 >= oldest) return std::vector<EventRecord>();
-        Result<Logbook> book = Logbook::open(engine_.storeRoot());
+        Result<Logbook> book = Logbook::openToRead(engine_.storeRoot());
         if (!book) return book.error();
         auto events = book->eventsAfter(after_, kOldEventsAtOnce);
         if (!events) return events;
@@ -168,11 +169,14 @@ void HttpServer::Impl::route() {
     server_.Patch(everything, handle);
     server_.Delete(everything, handle);
     server_.Options(everything, handle);
-    server_.set_exception_handler(
-        [](const httplib::Request& /*request*/, httplib::Response& response, std::exception_ptr) {
-            log::error("api: internal error");
-            answer(problem({ErrorKind::Internal, "internal error"}), response);
-        });
+    server_.set_exception_handler([](const httplib::Request& request,
+                                     httplib::Response& response,
+                                     std::exception_ptr thrown) {
+        const auto work = [&] { std::rethrow_exception(thrown); };
+        const Result<void> ended = guarded("api: " + request.method + " " + request.path, work);
+        log::error(ended.error().message);
+        answer(problem({ErrorKind::Internal, "internal error"}), response);
+    });
     // What never came as far as a handler: too long, or no HTTP.
     server_.set_error_handler([](const httplib::Request& /*request*/, httplib::Response& response) {
         if (!response.body.empty()) return;

@@ -65,7 +65,7 @@ Result<std::string> DaemonClient::post(const std::string& path, const std::strin
     return answer->body;
 }
 
-Result<void> DaemonClient::follow(std::uint64_t after,
+Result<bool> DaemonClient::follow(std::uint64_t after,
                                   const std::function<bool(const StreamEvent&)>& on,
                                   const std::function<bool()>& idle) const {
     httplib::Client client = clientOf(socket_);
@@ -94,7 +94,7 @@ Result<void> DaemonClient::follow(std::uint64_t after,
             return !enough;
         });
     if (status >= 400) return errorOf(status, refusal);
-    if (enough || answer) return {};
+    if (enough || answer) return enough;
     return unreachable(status != 0);
 }
 

@@ -20,9 +20,9 @@ public:
     [[nodiscard]] Result<std::string> get(const std::string& path) const;
     Result<std::string> post(const std::string& path, const std::string& json) const;
 
-    /// Hands on the events after number `after` until `on` says no (or the stream ends). `idle` is
-    /// asked at least each second, and says whether to go on.
-    Result<void> follow(std::uint64_t after,
+    /// Hands on the events after number `after` until `on` says no. `idle` is asked at least each
+    /// second, and says whether to go on. False: the daemon ended the stream.
+    Result<bool> follow(std::uint64_t after,
                         const std::function<bool(const StreamEvent&)>& on,
                         const std::function<bool()>& idle) const;
 

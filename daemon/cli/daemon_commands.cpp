@@ -3,7 +3,9 @@
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <optional>
 
+#include "daemon/cli/answer.h"
 #include "daemon/cli/commands.h"
 #include "daemon/cli/daemon_client.h"
 #include "daemon/cli/interrupt.h"
@@ -20,54 +22,44 @@ std::string textOr(const Json& json, const std::string& otherwise) {
     return json.is_string() ? json.get<std::string>() : otherwise;
 }
 
-/// What the daemon answers, printed as it is or by `show`.
-template <class Show>
-Result<void> shown(const CommonOptions& common, const Result<std::string>& answer, Show show) {
-    if (!answer) return answer.error();
-    const Json json = Json::parse(*answer);
-    if (common.json) {
-        printJson(json);
-    } else if (!common.quiet) {
-        show(json);
-    }
-    return {};
-}
-
 std::string jobLine(const Json& job) {
     if (!job.is_object()) return "none";
-    std::string line = std::to_string(job["id"].get<int>()) + ": " + textOr(job["kind"], "") + " " +
-                       textOr(job["name"], "");
-    if (job["wanted"].is_string()) return line + " waits: " + job["wanted"].get<std::string>();
-    line += ", step " + std::to_string(job["step"].get<int>()) + " of " +
-            std::to_string(job["steps"].get<int>());
-    if (job["left_s"].is_number())
-        line += ", " + fixed(job["left_s"].get<double>(), 0) + " s to go";
+    std::string line = std::to_string(job.at("id").get<int>()) + ": " + textOr(job.at("kind"), "") +
+                       " " + textOr(job.at("name"), "");
+    if (job.at("wanted").is_string())
+        return line + " waits: " + job.at("wanted").get<std::string>();
+    line += ", step " + std::to_string(job.at("step").get<int>()) + " of " +
+            std::to_string(job.at("steps").get<int>());
+    if (job.at("left_s").is_number())
+        line += ", " + fixed(job.at("left_s").get<double>(), 0) + " s to go";
     return line;
 }
 
 void printStatus(const Json& status) {
-    const Json& rig = status["rig"];
-    std::string rigLine = textOr(rig["serial"], "none yet") + " (" + textOr(rig["kind"], "") +
-                          "), " + textOr(rig["state"], "");
-    if (rig["placed"].is_string()) rigLine += "; under it: " + rig["placed"].get<std::string>();
-    if (rig["obstacle"].is_string()) rigLine += "; " + rig["obstacle"].get<std::string>();
-    const Json& session = status["session"];
+    const Json& rig = status.at("rig");
+    std::string rigLine = textOr(rig.at("serial"), "none yet") + " (" + textOr(rig.at("kind"), "") +
+                          "), " + textOr(rig.at("state"), "");
+    if (rig.at("placed").is_string())
+        rigLine += "; under it: " + rig.at("placed").get<std::string>();
+    if (rig.at("obstacle").is_string()) rigLine += "; " + rig.at("obstacle").get<std::string>();
+    if (rig.value("interlock_closed", true) == false) rigLine += "; its interlock is open";
+    const Json& session = status.at("session");
     std::vector<std::vector<std::string>> rows{
         {"rig", rigLine},
-        {"job", jobLine(status["job"])},
+        {"job", jobLine(status.at("job"))},
         {"session",
          session.is_object()
-             ? textOr(session["name"], "") + ", since " + textOr(session["opened"], "")
+             ? textOr(session.at("name"), "") + ", since " + textOr(session.at("opened"), "")
              : "none"}};
-    for (const auto& [kind, date] : status["calibrations"].items()) {
+    for (const auto& [kind, date] : status.at("calibrations").items()) {
         rows.push_back({kind, textOr(date, "not calibrated; run: gonio calibrate " + kind)});
     }
-    const Json& daemon = status["daemon"];
-    rows.push_back({"store", textOr(daemon["store"], "")});
+    const Json& daemon = status.at("daemon");
+    rows.push_back({"store", textOr(daemon.at("store"), "")});
     rows.push_back({"daemon",
-                    "gonio " + textOr(daemon["version"], "") + ", process " +
-                        std::to_string(daemon["pid"].get<int>()) + ", profile " +
-                        textOr(daemon["profile"], "")});
+                    "gonio " + textOr(daemon.at("version"), "") + ", process " +
+                        std::to_string(daemon.at("pid").get<int>()) + ", profile " +
+                        textOr(daemon.at("profile"), "")});
     printTable(rows);
 }
 
@@ -82,14 +74,14 @@ void printList(const Json& list,
     for (const Json& one : list) {
         auto& row = rows.emplace_back();
         for (const std::string& member : members) {
-            row.push_back(one[member].is_number() ? one[member].dump() : textOr(one[member], "-"));
+            row.push_back(one.at(member).is_number() ? one.at(member).dump()
+                                                     : textOr(one.at(member), "-"));
         }
     }
     printTable(rows);
 }
 
-std::string eventLine(const StreamEvent& event) {
-    const Json data = Json::parse(event.data);
+std::string eventLine(const StreamEvent& event, const Json& data) {
     std::string line = event.type;
     for (const auto& [name, value] : data.items()) {
         if (value.is_string() && value.get<std::string>().empty()) continue;
@@ -107,6 +99,27 @@ std::string absolutePlace(const std::string& what) {
     return word ? what : fs::absolute(what).lexically_normal().string();
 }
 
+/// The job that runs, and what it waits for.
+struct RunningJob {
+    std::string id;
+    std::optional<std::uint64_t> question;
+};
+
+Result<RunningJob> runningJob(const DaemonClient& client, const std::string& command) {
+    const auto now = client.get("/api/v1/status");
+    if (!now) return now.error();
+    std::optional<RunningJob> running;
+    const Result<void> read = understood(*now, [&](const Json& status) {
+        const Json& job = status.at("job");
+        if (!job.is_object()) return;
+        running.emplace().id = std::to_string(job.at("id").get<std::int64_t>());
+        if (!job.at("question").is_null()) running->question = job.at("question");
+    });
+    if (!read) return read.error();
+    if (!running) return Error{ErrorKind::Usage, "jobs " + command + ": no job is running"};
+    return *running;
+}
+
 }  // namespace
 
 Result<void> status(const CommonOptions& common) {
@@ -116,7 +129,7 @@ Result<void> status(const CommonOptions& common) {
 Result<void> rigs(const CommonOptions& common) {
     const auto answer = DaemonClient(common.socketPath()).get("/api/v1/rigs");
     return shown(common, answer, [](const Json& json) {
-        printList(json["rigs"],
+        printList(json.at("rigs"),
                   {"serial", "kind", "place", "protocol", "obstacle"},
                   "no rig is there; is it plugged in?");
     });
@@ -125,7 +138,7 @@ Result<void> rigs(const CommonOptions& common) {
 Result<void> samples(const CommonOptions& common) {
     const auto answer = DaemonClient(common.socketPath()).get("/api/v1/samples");
     return shown(common, answer, [](const Json& json) {
-        printList(json["samples"], {"name", "date", "rig", "session"}, "no samples yet");
+        printList(json.at("samples"), {"name", "date", "rig", "session"}, "no samples yet");
     });
 }
 
@@ -133,31 +146,31 @@ Result<void> jobs(const CommonOptions& common) {
     const auto answer = DaemonClient(common.socketPath()).get("/api/v1/jobs");
     return shown(common, answer, [](const Json& json) {
         printList(
-            json["jobs"], {"id", "kind", "name", "state", "started", "message"}, "no jobs yet");
-    });
-}
-
-/// Asks something of the job that runs.
-Result<void> tellJob(const CommonOptions& common,
-                     const std::string& wish,
-                     const std::string& said) {
-    const DaemonClient client(common.socketPath());
-    const auto now = client.get("/api/v1/status");
-    if (!now) return now.error();
-    const Json job = Json::parse(*now)["job"];
-    if (!job.is_object()) return Error{ErrorKind::Usage, "jobs " + wish + ": no job is running"};
-    const std::string id = std::to_string(job["id"].get<std::int64_t>());
-    return shown(common, client.post("/api/v1/jobs/" + id + "/" + wish, "{}"), [&](const Json&) {
-        std::cout << "job " << id << " " << said << "\n";
+            json.at("jobs"), {"id", "kind", "name", "state", "started", "message"}, "no jobs yet");
     });
 }
 
 Result<void> cancelJob(const CommonOptions& common) {
-    return tellJob(common, "cancel", "ends at its next step");
+    const DaemonClient client(common.socketPath());
+    const auto job = runningJob(client, "cancel");
+    if (!job) return job.error();
+    return shown(
+        common, client.post("/api/v1/jobs/" + job->id + "/cancel", "{}"), [&](const Json&) {
+            std::cout << "job " << job->id << " ends at its next step\n";
+        });
 }
 
 Result<void> proceedJob(const CommonOptions& common) {
-    return tellJob(common, "proceed", "goes on");
+    const DaemonClient client(common.socketPath());
+    const auto job = runningJob(client, "proceed");
+    if (!job) return job.error();
+    if (!job->question) {
+        return Error{ErrorKind::Usage, "jobs proceed: job " + job->id + " waits for nobody"};
+    }
+    const Json answer{{"question", *job->question}};
+    const auto done = client.post("/api/v1/jobs/" + job->id + "/proceed", answer.dump());
+    return shown(
+        common, done, [&](const Json&) { std::cout << "job " << job->id << " goes on\n"; });
 }
 
 Result<void> newSession(const CommonOptions& common, const SessionOptions& options) {
@@ -165,14 +178,14 @@ Result<void> newSession(const CommonOptions& common, const SessionOptions& optio
         {"name", options.name}, {"operator", options.operatorName}, {"notes", options.notes}};
     const auto answer = DaemonClient(common.socketPath()).post("/api/v1/sessions", request.dump());
     return shown(common, answer, [](const Json& json) {
-        std::cout << "session " << textOr(json["name"], "") << " is open\n";
+        std::cout << "session " << textOr(json.at("name"), "") << " is open\n";
     });
 }
 
 Result<void> closeSession(const CommonOptions& common) {
     const auto answer = DaemonClient(common.socketPath()).post("/api/v1/sessions/close", "{}");
     return shown(common, answer, [](const Json& json) {
-        std::cout << "session " << textOr(json["name"], "") << " is closed\n";
+        std::cout << "session " << textOr(json.at("name"), "") << " is closed\n";
     });
 }
 
@@ -180,7 +193,7 @@ Result<void> listSessions(const CommonOptions& common) {
     const auto answer = DaemonClient(common.socketPath()).get("/api/v1/sessions");
     return shown(common, answer, [](const Json& json) {
         printList(
-            json["sessions"], {"id", "name", "operator", "opened", "closed"}, "no sessions yet");
+            json.at("sessions"), {"id", "name", "operator", "opened", "closed"}, "no sessions yet");
     });
 }
 
@@ -191,21 +204,25 @@ Result<void> watch(const CommonOptions& common, const WatchOptions& options) {
     if (!options.after) {
         const auto now = client.get("/api/v1/status");
         if (!now) return now.error();
-        after = Json::parse(*now)["daemon"]["newest_event"];
+        const Result<void> read = understood(
+            *now, [&](const Json& json) { after = json.at("daemon").at("newest_event"); });
+        if (!read) return read;
     }
+    Result<void> read;
     const auto on = [&](const StreamEvent& event) {
-        if (common.json) {
-            std::cout << Json{{"id", event.id},
-                              {"type", event.type},
-                              {"data", Json::parse(event.data)}}
-                             .dump(-1, ' ', false, Json::error_handler_t::replace)
+        read = understood(event.data, [&](const Json& data) {
+            const Json whole{{"id", event.id}, {"type", event.type}, {"data", data}};
+            std::cout << (common.json ? whole.dump(-1, ' ', false, Json::error_handler_t::replace)
+                                      : eventLine(event, data))
                       << std::endl;
-        } else {
-            std::cout << eventLine(event) << std::endl;
-        }
-        return static_cast<bool>(std::cout);
+        });
+        return read && std::cout;
     };
-    return client.follow(after, on, [] { return !interrupted(); });
+    const auto followed = client.follow(after, on, [] { return !interrupted(); });
+    if (!read) return read;
+    if (!followed) return followed.error();
+    if (*followed) return {};
+    return Error{ErrorKind::NoRig, "the daemon has ended"};
 }
 
 Result<void> simPlace(const CommonOptions& common, PlaceRequest place) {
@@ -220,7 +237,7 @@ Result<void> simPlace(const CommonOptions& common, PlaceRequest place) {
     if (place.systematic) request["systematic"] = *place.systematic;
     const auto answer = DaemonClient(common.socketPath()).post("/api/v1/sim/place", request.dump());
     return shown(common, answer, [&](const Json& json) {
-        std::cout << "under the simulated rig " << textOr(json["serial"], "") << ": " << said
+        std::cout << "under the simulated rig " << textOr(json.at("serial"), "") << ": " << said
                   << "\n";
     });
 }

@@ -217,7 +217,7 @@ Program::Program() {
     app.require_subcommand(1);
     app.set_version_flag("--version", GONIO_VERSION);
     app.add_flag("--json", common.json, "print JSON for machines");
-    app.add_flag("-q,--quiet", common.quiet, "no progress bar");
+    app.add_flag("-q,--quiet", common.quiet, "no progress bar and no report: errors and JSON only");
     app.add_flag("-v,--verbose", verbose, "say on stderr what is done");
     app.add_flag("-y,--yes", common.yes, "what a person is asked to do is done");
     app.add_option("--store", common.store, "folder of calibrations and samples");

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "daemon/guarded.h"
 #include "daemon/problem.h"
 #include "proc/core/log.h"
 #include "proc/core/number_text.h"
@@ -41,7 +42,7 @@ Result<T> Engine::ask(std::function<Result<T>()> work) {
         if (ended_) return stopping();
         if (status_.job) return busyWith(status_.job->record);
         mailbox_.push_back([answer, work = std::move(work)](const std::optional<Error>& refusal) {
-            answer->set_value(refusal ? Result<T>(*refusal) : work());
+            answer->set_value(refusal ? Result<T>(*refusal) : guarded("the daemon", work));
         });
     }
     asked_.notify_all();
@@ -84,12 +85,7 @@ Result<JobRecord> Engine::submit(const JobRequest& request) {
 }
 
 Result<JobRecord> Engine::begin(const JobRequest& request) {
-    const EngineState state = status().state;
-    if (state != EngineState::Idle) {
-        return Error{state == EngineState::Fault ? ErrorKind::Device : ErrorKind::NoRig,
-                     "the rig is " + std::string(name(state)) +
-                         (lastObstacle_.empty() ? "" : ": " + lastObstacle_)};
-    }
+    if (status().state != EngineState::Idle) return noRig();
     Result<JobRecord> record = logbook_.beginJob({.kind = std::string(name(request.kind)),
                                                   .name = request.name,
                                                   .startedUtc = world_.utcNow()});
@@ -117,11 +113,17 @@ Result<void> Engine::cancel(std::int64_t job) {
     return {};
 }
 
-Result<void> Engine::proceed(std::int64_t job) {
+Result<void> Engine::proceed(std::int64_t job, std::uint64_t question) {
     {
         const std::scoped_lock lock(mutex_);
-        if (!runs(job) || status_.job->prompt.empty()) {
+        if (!runs(job) || !status_.job->question) {
             return Error{ErrorKind::Usage, "job " + std::to_string(job) + " waits for nobody"};
+        }
+        if (const Question& asked = *status_.job->question; asked.number != question) {
+            return Error{ErrorKind::Usage,
+                         "job " + std::to_string(job) + " no longer asks question " +
+                             std::to_string(question) + " but " + std::to_string(asked.number) +
+                             ": " + asked.wanted};
         }
         if (wish_ == Wish::None) wish_ = Wish::Proceed;
     }
@@ -166,8 +168,7 @@ Result<void> Engine::place(const PlaceRequest& request) {
         advance(EngineEvent::Lost, "another simulated rig was chosen");
         nextTry_ = Nanoseconds(0);
         connect();
-        if (!rig_) return Error{ErrorKind::NoRig, lastObstacle_};
-        return {};
+        return rig_ ? Result<void>() : noRig();
     });
 }
 
@@ -270,6 +271,7 @@ Result<std::unique_ptr<Engine>> Engine::open(const std::filesystem::path& root,
     if (!store) return store.error();
     Result<StoreLock> lock = StoreLock::take(store->root());
     if (!lock) return lock.error();
+    if (Result<void> swept = store->sweep(); !swept) return swept.error();
     Result<Logbook> logbook = Logbook::open(store->root());
     if (!logbook) return logbook.error();
     const auto interrupted = logbook->interruptJobs(world.utcNow());

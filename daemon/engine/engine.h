@@ -25,12 +25,18 @@
 
 namespace gonio::daemon {
 
+/// What a person has to do before a job goes on.
+struct Question {
+    std::uint64_t number = 0;  ///< of the event that asks it
+    std::string wanted;
+};
+
 /// The job that runs.
 struct JobStatus {
     JobRecord record;
     int step = 0, steps = 0;
-    std::string what;    ///< the newest step
-    std::string prompt;  ///< what a person has to do before it goes on; empty: nothing
+    std::string what;  ///< the newest step
+    std::optional<Question> question{};
     Seconds elapsed{0};
     std::optional<Seconds> left{};  ///< by the steps that are done
 };
@@ -45,7 +51,7 @@ struct EngineStatus {
     EngineState state = EngineState::Offline;
     std::string portKind;
     std::string serial;    ///< empty: no rig has been seen yet
-    std::string obstacle;  ///< why there is no rig
+    std::string obstacle;  ///< why there is no rig, or none that may be lit
     std::string placed;    ///< empty: only a person knows
     std::optional<driver::Status> rig{};
     std::optional<JobStatus> job{};
@@ -85,8 +91,9 @@ public:
     Result<JobRecord> submit(const JobRequest& request);
     /// Ends the running job at its next step; a Usage error when it is not the running one.
     Result<void> cancel(std::int64_t job);
-    /// What the job asked for is done.
-    Result<void> proceed(std::int64_t job);
+    /// What this question of the job's wanted is done; a Usage error when it is not the one that is
+    /// asked now.
+    Result<void> proceed(std::int64_t job, std::uint64_t question);
     Result<SessionRecord> openSession(const SessionRecord& session);
     Result<SessionRecord> closeSession();
     /// Usage error with a real rig.
@@ -130,6 +137,8 @@ private:
     void tend();
     void lost(const Error& why);
     void disconnect();
+    void hinder(const std::optional<Error>& obstacle);
+    [[nodiscard]] Error noRig() const;
     void runPending(const std::stop_token& stop);
     [[nodiscard]] Result<std::string> runOn(const JobRequest& request, Monitor& monitor);
     void settle(JobRecord& job, const Result<std::string>& outcome, const Monitor& monitor);
@@ -159,7 +168,7 @@ private:
     std::optional<driver::Rig> rig_;
     std::optional<Pending> pending_;
     Nanoseconds nextTry_{0};
-    std::string lastObstacle_;
+    std::optional<Error> obstacle_;  ///< why there is no rig, or none that may be lit
 
     mutable std::mutex mutex_;  ///< of what is below
     std::condition_variable asked_;

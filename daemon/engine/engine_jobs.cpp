@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/engine/engine.h"
+#include "daemon/guarded.h"
 #include "proc/core/log.h"
 #include "proc/core/number_text.h"
 
@@ -41,7 +42,7 @@ public:
     }
     Result<void> ask(const std::string& what) override;
     void captured() override { engine_.advance(EngineEvent::Captured); }
-    void computing() override { engine_.world_.alive(); }
+    void alive() override { engine_.world_.alive(); }
 
     /// How a job that did not succeed has ended.
     [[nodiscard]] JobState verdict() const {
@@ -56,10 +57,10 @@ private:
         return stop_.stop_requested() || engine_.wish_ == Wish::Cancel;
     }
     /// An answer counts from the moment on at which the question can be seen.
-    std::int64_t prompt(const std::string& what) {
+    std::int64_t put(std::optional<Question> question) {
         const std::scoped_lock lock(engine_.mutex_);
         if (engine_.wish_ == Wish::Proceed) engine_.wish_ = Wish::None;
-        engine_.status_.job->prompt = what;
+        engine_.status_.job->question = std::move(question);
         return engine_.status_.job->record.id;
     }
 
@@ -91,8 +92,9 @@ void Engine::Monitor::tell(const std::string& what) {
 }
 
 Result<void> Engine::Monitor::ask(const std::string& what) {
-    const std::int64_t job = prompt(what);
-    engine_.tell("operator", dump({{"job", job}, {"wanted", what}}), true);
+    const std::uint64_t number = engine_.events_.newest() + 1;  // the owner alone adds
+    const std::int64_t job = put(Question{number, what});
+    engine_.tell("operator", dump({{"job", job}, {"question", number}, {"wanted", what}}), true);
     while (true) {
         engine_.world_.alive();
         if (Result<void> there = engine_.rig_->keepAlive(); !there) return there;
@@ -104,7 +106,7 @@ Result<void> Engine::Monitor::ask(const std::string& what) {
         }
         if (engine_.wish_ == Wish::Proceed) {
             lock.unlock();
-            prompt({});
+            put({});
             return {};
         }
     }
@@ -134,7 +136,8 @@ Result<std::string> Engine::runOn(const JobRequest& request, Monitor& monitor) {
                          .session = now.session ? now.session->name : "",
                          .utcNow = world_.utcNow,
                          .monitor = monitor};
-    Result<std::string> outcome = runJob(bench, request);
+    Result<std::string> outcome =
+        guarded("job " + std::string(name(request.kind)), [&] { return runJob(bench, request); });
     const auto returned = logbook_.set("plan-step/" + now.serial, std::to_string(*step));
     if (!returned) log::warning(returned.error().message);
     return outcome;

@@ -12,6 +12,17 @@ using namespace std::chrono_literals;
 constexpr Nanoseconds kRescan = 500ms;  // PROTOCOL.md 4
 constexpr Nanoseconds kRetryHeld = 2s;  // held by another, or no permission
 
+/// A latched fault, and what a person does about it.
+std::string explained(std::uint16_t fault) {
+    const std::string name = driver::statusName(fault);
+    switch (fault) {
+        case driver::status::kInterlock:
+            return name + ": the aperture left the sample, or the hood is open; seat it again";
+        case driver::status::kOverTemp: return name + ": too warm to light; let it cool";
+        default: return name + ": if it stays, unplug the rig and plug it in again";
+    }
+}
+
 }  // namespace
 
 void Engine::connect() {
@@ -22,9 +33,25 @@ void Engine::connect() {
     disconnect();
     advance(EngineEvent::Lost, why.message);
     nextTry_ = world_.clock.now() + (why.kind == ErrorKind::Busy ? kRetryHeld : kRescan);
-    if (why.message != lastObstacle_) log::warning(why.message);
-    lastObstacle_ = why.message;
-    publish([&](EngineStatus& status) { status.obstacle = why.message; });
+    hinder(why);
+}
+
+void Engine::hinder(const std::optional<Error>& obstacle) {
+    const std::string text = obstacle ? obstacle->message : "";
+    if (!text.empty() && (!obstacle_ || obstacle_->message != text)) log::warning(text);
+    obstacle_ = obstacle;
+    publish([&](EngineStatus& status) { status.obstacle = text; });
+}
+
+/// Why nothing can be asked of the rig now.
+Error Engine::noRig() const {
+    const EngineState state = status().state;
+    const bool held = obstacle_ && obstacle_->kind == ErrorKind::Busy;
+    return {
+        state == EngineState::Fault ? ErrorKind::Device
+        : held                      ? ErrorKind::Busy
+                                    : ErrorKind::NoRig,
+        "the rig is " + std::string(name(state)) + (obstacle_ ? ": " + obstacle_->message : "")};
 }
 
 Result<void> Engine::claim() {
@@ -49,8 +76,7 @@ Result<void> Engine::claim() {
     auto rig = driver::Rig::open(**transport, id);
     if (!rig) return rig.error();
     rig_.emplace(std::move(*rig));
-    lastObstacle_.clear();
-    publish([](EngineStatus& status) { status.obstacle.clear(); });
+    hinder({});
     publishCalibrations();
     advance(EngineEvent::Claimed);
     log::info("rig " + serial + " is claimed");
@@ -64,11 +90,9 @@ void Engine::disconnect() {
 }
 
 void Engine::lost(const Error& why) {
-    log::warning(why.message);
-    lastObstacle_ = why.message;
     disconnect();
     advance(EngineEvent::Lost, why.message);
-    publish([&](EngineStatus& status) { status.obstacle = why.message; });
+    hinder(why);
     nextTry_ = world_.clock.now() + kRescan;
 }
 
@@ -80,12 +104,13 @@ void Engine::tend() {
     publish([&](EngineStatus& status) { status.rig = said; });
     if (!said) return;
     if (said->state == driver::RigState::Fault) {
+        hinder(Error{ErrorKind::Device, explained(said->fault)});
         advance(EngineEvent::FaultSeen, driver::statusName(said->fault));
         // Refused while its cause lasts, and dark afterwards all the same.
-        if (rig_->link().command(driver::Op::ClearFault)) advance(EngineEvent::FaultCleared);
-    } else {
-        advance(EngineEvent::FaultCleared);
+        if (!rig_->link().command(driver::Op::ClearFault)) return;
     }
+    advance(EngineEvent::FaultCleared);
+    if (obstacle_) hinder({});
 }
 
 }  // namespace gonio::daemon

@@ -26,6 +26,8 @@ Result<JobKind> parseJobKind(std::string_view text) {
 Result<void> check(const JobRequest& request) {
     if (request.kind == JobKind::Measure) {
         if (Result<void> good = checkSampleName(request.name); !good) return good;
+    } else if (!request.name.empty()) {
+        return Error{ErrorKind::Usage, "name '" + request.name + "': only a measurement has one"};
     }
     if (request.notes.size() > kLongestNotes) {
         return Error{ErrorKind::Usage, "notes: more than 4096 bytes"};

@@ -47,8 +47,8 @@ public:
     virtual Result<void> ask(const std::string& what) = 0;
     /// All frames are there; what is left is computing.
     virtual void captured() = 0;
-    /// Several times a second while it computes.
-    virtual void computing() = 0;
+    /// It goes on: every few seconds at least, between two steps.
+    virtual void alive() = 0;
 };
 
 /// What a job works with; all borrowed.

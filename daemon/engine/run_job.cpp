@@ -49,13 +49,14 @@ private:
                 .profile = bench_.profile,
                 .nextPlanStep = bench_.nextPlanStep,
                 .clock = bench_.computer,
-                .step = [this](const std::string& what) { return bench_.monitor.step(what); }};
+                .step = [this](const std::string& what) { return bench_.monitor.step(what); },
+                .alive = [this] { bench_.monitor.alive(); }};
     }
     /// What `work` answers, which takes long; rig and watchdog are fed meanwhile.
     template <class Work>
     auto whileAlive(Work work) const {
         return alongside(
-            bench_.rig, [this] { bench_.monitor.computing(); }, std::move(work));
+            bench_.rig, [this] { bench_.monitor.alive(); }, std::move(work));
     }
     [[nodiscard]] std::size_t leds() const { return bench_.rig.identify().ledAngles.size(); }
     [[nodiscard]] proc::SampleInfo info(const std::string& name) const;
@@ -151,8 +152,11 @@ Result<Json> JobRun::calibrateMirror() {
     if (Result<void> dark = bench_.rig.darken(); !dark) return dark.error();
     bench_.monitor.captured();
     lens->dateUtc = bench_.utcNow();
-    const auto kept = bench_.store.addCalibration(
-        {.rig = serial_, .kind = "mirror", .dateUtc = lens->dateUtc}, {.file = encodeLens(*lens)});
+    const auto kept = whileAlive([&] {
+        return bench_.store.addCalibration(
+            {.rig = serial_, .kind = "mirror", .dateUtc = lens->dateUtc},
+            {.file = encodeLens(*lens)});
+    });
     if (!kept) return kept.error();
     return Json{{"schema", "gonio/calibrate-mirror/1"},
                 {"rig", serial_},

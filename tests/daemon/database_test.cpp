@@ -74,6 +74,24 @@ TEST(Database, MigratesOnceAndRefusesANewerSchema) {
     EXPECT_NE(older.error().message.find("newer gonio"), std::string::npos);
 }
 
+TEST(Database, OpenedToReadChangesNothingAndSeesWhatIsThere) {
+    const test::TempFolder folder;
+    EXPECT_FALSE(Database::openToRead(folder / "x.db", 1)) << "there is none";
+    EXPECT_FALSE(std::filesystem::exists(folder / "x.db"));
+    auto writer = Database::open(folder / "x.db", kOne);
+    ASSERT_TRUE(writer) << writer.error().message;
+    auto reader = Database::openToRead(folder / "x.db", 1);
+    ASSERT_TRUE(reader) << reader.error().message;
+    ASSERT_TRUE(writer->run("CREATE TABLE later(x)"));
+    EXPECT_TRUE(reader->run("SELECT * FROM later"));
+    EXPECT_FALSE(reader->run("DROP TABLE later"));
+    for (const auto& [version, said] : {std::pair(0, "newer"), std::pair(2, "older")}) {
+        const auto other = Database::openToRead(folder / "x.db", static_cast<std::size_t>(version));
+        ASSERT_FALSE(other);
+        EXPECT_NE(other.error().message.find(said), std::string::npos) << other.error().message;
+    }
+}
+
 TEST(Database, NamesTheFileThatIsNone) {
     const test::TempFolder folder;
     std::ofstream(folder / "x.db") << std::string(5000, 'x');

@@ -134,6 +134,30 @@ TEST_F(OpenStore, NewestCalibrationOfARigAndKindCounts) {
     EXPECT_FALSE(*store->newestCalibration("R3", "white"));
 }
 
+TEST(Store, OpenedToReadIsNotMade) {
+    const test::TempFolder folder;
+    const auto none = Store::openToRead(folder / "none");
+    ASSERT_FALSE(none);
+    EXPECT_EQ(none.error().kind, ErrorKind::File);
+    EXPECT_NE(none.error().message.find("there is none"), std::string::npos);
+    EXPECT_FALSE(std::filesystem::exists(folder / "none"));
+}
+
+TEST_F(OpenStore, IsReadBesideItsWriter) {
+    auto reader = Store::openToRead(folder.path());
+    ASSERT_TRUE(reader) << reader.error().message;
+    EXPECT_FALSE(reader->find("late")->has_value());
+    ASSERT_TRUE(add("late", "f"));
+    EXPECT_TRUE(reader->find("late")->has_value());
+}
+
+TEST(Store, PlaceIsAbsoluteForThoseWhoWorkElsewhere) {
+    const test::TempFolder folder;
+    const auto store = Store::open(std::filesystem::relative(folder / "here"));
+    ASSERT_TRUE(store) << store.error().message;
+    EXPECT_EQ(store->root(), std::filesystem::weakly_canonical(folder / "here"));
+}
+
 TEST_F(OpenStore, IsSharedByTwoThatHaveItOpen) {
     auto other = Store::open(folder.path());
     ASSERT_TRUE(other);

@@ -5,6 +5,7 @@ execute_process(
     COMMAND ${CMAKE_COMMAND} --install ${BUILD_DIR} --component program --prefix ${WORK_DIR}
     OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
 foreach(file bin/gonio bin/goniod lib/udev/rules.d/70-gonio.rules lib/systemd/system/goniod.service
+             lib/sysusers.d/gonio.conf
              etc/gonio/goniod.toml share/gonio/rigs/minidiff-usb2.toml
              share/gonio/references/white-ptfe.csv)
     if(NOT EXISTS ${WORK_DIR}/${file})

@@ -74,7 +74,7 @@ TEST(ApiProblem, OfEveryKindComesBackToItsExitCode) {
                                             {ErrorKind::NoRig, 503},
                                             {ErrorKind::Busy, 409},
                                             {ErrorKind::Device, 502},
-                                            {ErrorKind::File, 404},
+                                            {ErrorKind::File, 500},
                                             {ErrorKind::Quality, 422},
                                             {ErrorKind::Interrupted, 409}};
     for (const auto& [kind, status] : statuses) {
@@ -165,7 +165,9 @@ TEST_F(ApiOnSim, JobIsBegunFollowedAndCancelled) {
     expectProblem(post("jobs", R"({"kind":"calibrate-mirror"})"), 409, ErrorKind::Busy);
     expectProblem(post("sessions", "{}"), 409, ErrorKind::Busy);
     expectProblem(post("sim/place", R"({"what":"white"})"), 409, ErrorKind::Busy);
-    expectProblem(post(at + "/proceed", "{}"), 400, ErrorKind::Usage, {"waits for nobody"});
+    expectProblem(
+        post(at + "/proceed", R"({"question":1})"), 409, ErrorKind::Usage, {"waits for nobody"});
+    expectProblem(post(at + "/proceed", "{}"), 400, ErrorKind::Usage, {"'question'"});
     EXPECT_EQ(documentOf(get(at), "job")["state"], "running");
     EXPECT_EQ(documentOf(post(at + "/cancel", "{}"), "job-wish", 202)["id"], begun["id"]);
     ASSERT_TRUE(test::waitUntil([&] { return engine->status().job == std::nullopt; }));
@@ -173,7 +175,7 @@ TEST_F(ApiOnSim, JobIsBegunFollowedAndCancelled) {
     EXPECT_EQ(ended["state"], "cancelled");
     EXPECT_EQ(ended["problem"], "interrupted");
     EXPECT_EQ(documentOf(get("jobs"), "jobs")["jobs"][0]["state"], "cancelled");
-    expectProblem(post(at + "/cancel", "{}"), 400, ErrorKind::Usage, {"not running"});
+    expectProblem(post(at + "/cancel", "{}"), 409, ErrorKind::Usage, {"not running"});
 }
 
 TEST_F(ApiOnSim, JobThatIsNotThereIsNotFound) {
@@ -237,7 +239,7 @@ TEST_F(ApiOnSim, PlacedSurfaceIsSaid) {
     EXPECT_EQ(placed["tilt_y_deg"], -2.5);
     EXPECT_EQ(documentOf(get("status"), "status")["rig"]["placed"], "mirror");
     expectProblem(post("sim/place", R"({"what":"model:lambret"})"), 400, ErrorKind::Usage);
-    expectProblem(post("sim/place", R"({"what":"/none.bsdf"})"), 404, ErrorKind::File, {"/none"});
+    expectProblem(post("sim/place", R"({"what":"/none.bsdf"})"), 422, ErrorKind::File, {"/none"});
     expectProblem(post("sim/place", R"({"what":"none.bsdf"})"), 400, ErrorKind::Usage);
     EXPECT_EQ(documentOf(post("sim/place", R"({"what":"white","serial":"SIM-2"})"),
                          "sim-place")["serial"],
@@ -364,8 +366,8 @@ TEST_F(ApiOnUsb, WithoutARigItIsSaidWhy) {
     EXPECT_EQ(json["rig"]["state"], "offline");
     EXPECT_EQ(json["rig"]["obstacle"], "held by another program");
     expectProblem(post("jobs", R"({"kind":"calibrate-mirror"})"),
-                  503,
-                  ErrorKind::NoRig,
+                  409,
+                  ErrorKind::Busy,
                   {"held by another program"});
 }
 
@@ -374,11 +376,14 @@ TEST_F(ApiOnUsb, QuestionToAPersonIsInTheStatusAndAnswered) {
     running->await(EngineState::Idle);
     const Json begun = documentOf(post("jobs", R"({"kind":"calibrate-mirror"})"), "job", 202);
     const std::string at = "jobs/" + std::to_string(begun["id"].get<std::int64_t>());
-    const auto wanted = [&] { return documentOf(get("status"), "status")["job"]["wanted"]; };
-    ASSERT_TRUE(test::waitUntil([&] { return wanted().is_string(); }));
-    const Json first = wanted();
-    documentOf(post(at + "/proceed", "{}"), "job-wish", 202);
-    ASSERT_TRUE(test::waitUntil([&] { return wanted() != first; }));
+    const auto job = [&] { return documentOf(get("status"), "status")["job"]; };
+    ASSERT_TRUE(test::waitUntil([&] { return job()["wanted"].is_string(); }));
+    const Json first = job();
+    const std::string answer = Json{{"question", first["question"]}}.dump();
+    documentOf(post(at + "/proceed", answer), "job-wish", 202);
+    ASSERT_TRUE(test::waitUntil([&] { return job()["wanted"] != first["wanted"]; }));
+    ASSERT_TRUE(test::waitUntil([&] { return job()["wanted"].is_string(); }));
+    expectProblem(post(at + "/proceed", answer), 409, ErrorKind::Usage, {"no longer asks"});
     documentOf(post(at + "/cancel", "{}"), "job-wish", 202);
     running->await(EngineState::Idle);
 }

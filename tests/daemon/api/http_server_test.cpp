@@ -221,7 +221,7 @@ EventRecord eventOf(const std::string& type) {
 std::vector<std::uint64_t> follow(const fs::path& socket, std::uint64_t after, std::uint64_t last) {
     std::vector<std::uint64_t> ids;
     const auto deadline = std::chrono::steady_clock::now() + test::kPatience;
-    const Result<void> done = DaemonClient(socket).follow(
+    const Result<bool> done = DaemonClient(socket).follow(
         after,
         [&](const StreamEvent& event) {
             ids.push_back(event.id);

@@ -115,8 +115,10 @@ TEST_F(ApiDocuments, ConformWithAndWithoutAJobAndASession) {
     expectConforms("GET", "status");
     EXPECT_TRUE(last["job"]["wanted"].is_string());
     EXPECT_TRUE(last["session"].is_object());
+    const Json answer{{"question", last["job"]["question"]}};
+    EXPECT_EQ(JsonSchema("request-proceed").complaints(answer), "");
     expectConforms("GET", "jobs/1");
-    expectConforms("POST", "jobs/1/proceed", Json::object());
+    expectConforms("POST", "jobs/1/proceed", answer);
     watcher.until("operator");
     expectConforms("POST", "jobs/1/cancel", Json::object());
     watcher.until("job", {{"state", "cancelled"}});

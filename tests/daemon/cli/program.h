@@ -38,17 +38,18 @@ inline int exitCodeOf(int status) {
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-/// Starts a program with nothing on stdin.
+/// Starts a program, with nothing on stdin unless a path is given.
 inline pid_t spawnProcess(std::vector<std::string> arguments,
                           const std::filesystem::path& out,
-                          const std::filesystem::path& err) {
+                          const std::filesystem::path& err,
+                          const std::filesystem::path& in = "/dev/null") {
     std::vector<char*> argv;
     for (std::string& argument : arguments) argv.push_back(argument.data());
     argv.push_back(nullptr);
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     constexpr int kWrite = O_WRONLY | O_CREAT | O_TRUNC;
-    posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_addopen(&actions, 0, in.c_str(), O_RDONLY, 0);
     posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), kWrite, 0600);
     posix_spawn_file_actions_addopen(&actions, 2, err.c_str(), kWrite, 0600);
     pid_t child = 0;

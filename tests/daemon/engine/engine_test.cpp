@@ -314,7 +314,7 @@ TEST_F(EngineOnRig, RigThatIsHeldByAnotherIsTriedAgainAfterTwoSeconds) {
     EXPECT_EQ(engine->status().obstacle, "held by another program");
     const auto refused = engine->submit(kMirrorJob);
     ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().kind, ErrorKind::NoRig);
+    EXPECT_EQ(refused.error().kind, ErrorKind::Busy);
     EXPECT_NE(refused.error().message.find("held by another program"), std::string::npos);
     engine.clock().turn(1999ms);
     ASSERT_TRUE(engine.awaitTurns(2));
@@ -356,24 +356,32 @@ TEST_F(EngineOnRig, JobWaitsForAPersonAndGoesOnWhenItIsDone) {
     engine.await(EngineState::Idle);
     Watcher watcher(*engine);
     const auto id = submit(engine);
-    const Json first = Json::parse(watcher.until("operator").back().data);
+    const EventRecord asked = watcher.until("operator").back();
+    const Json first = Json::parse(asked.data);
     EXPECT_EQ(first["job"], id);
+    EXPECT_EQ(first["question"], asked.id);
     EXPECT_NE(first["wanted"].get<std::string>().find("mirror"), std::string::npos) << first;
-    ASSERT_TRUE(engine->status().job);
-    EXPECT_EQ(engine->status().job->prompt, first["wanted"]);
+    ASSERT_TRUE(engine->status().job && engine->status().job->question);
+    EXPECT_EQ(engine->status().job->question->wanted, first["wanted"]);
+    EXPECT_EQ(engine->status().job->question->number, asked.id);
     EXPECT_EQ(engine->status().state, EngineState::Running);
     ASSERT_TRUE(engine.awaitTurns(2)) << "the watchdog is fed while it waits";
 
-    EXPECT_EQ(engine->proceed(id + 1).error().kind, ErrorKind::Usage);
-    ASSERT_TRUE(engine->proceed(id));
+    EXPECT_EQ(engine->proceed(id + 1, asked.id).error().kind, ErrorKind::Usage);
+    ASSERT_TRUE(engine->proceed(id, asked.id));
     const auto events = watcher.until("operator");  // the next wedge
     EXPECT_EQ(events.front().type, "progress");
     EXPECT_NE(Json::parse(events.back().data)["wanted"], first["wanted"]);
+    const auto late = engine->proceed(id, asked.id);
+    ASSERT_FALSE(late) << "that answered the question before";
+    EXPECT_NE(late.error().message.find(std::to_string(events.back().id)), std::string::npos)
+        << late.error().message;
 
     ASSERT_TRUE(engine->cancel(id));
     watcher.until("job", {{"job", id}, {"state", "cancelled"}});
     EXPECT_EQ(kept(id).state, JobState::Cancelled);
-    EXPECT_EQ(engine->proceed(id).error().kind, ErrorKind::Usage) << "it waits for nobody";
+    EXPECT_EQ(engine->proceed(id, events.back().id).error().kind, ErrorKind::Usage)
+        << "it waits for nobody";
 }
 
 TEST_F(EngineOnRig, AnswerThatComesWithTheQuestionIsNotLost) {
@@ -383,7 +391,10 @@ TEST_F(EngineOnRig, AnswerThatComesWithTheQuestionIsNotLost) {
     Watcher watcher(*engine);
     const auto id = submit(engine);
     // As quick as a client can be: it looks at the status and never waits for the event.
-    ASSERT_TRUE(waitUntil([&] { return static_cast<bool>(engine->proceed(id)); }));
+    ASSERT_TRUE(waitUntil([&] {
+        const auto job = engine->status().job;
+        return job && job->question && engine->proceed(id, job->question->number);
+    }));
     watcher.until("progress", {{"step", 2}});
     ASSERT_TRUE(engine->cancel(id));
 }
@@ -413,8 +424,29 @@ TEST_F(EngineOnRig, OpenInterlockIsAFaultUntilItIsClosed) {
     const auto refused = engine->submit(kMirrorJob);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().kind, ErrorKind::Device);
+    EXPECT_NE(refused.error().message.find("seat it again"), std::string::npos)
+        << refused.error().message;
+    EXPECT_NE(engine->status().obstacle.find("INTERLOCK"), std::string::npos);
     port.cable.setInterlock(driver::interlock::kMayLight);
     engine.await(EngineState::Idle);
+    EXPECT_EQ(engine->status().obstacle, "");
+}
+
+TEST_F(EngineOnRig, ExceptionEndsTheJobAndNotTheDaemon) {
+    port.failsToPlace = true;
+    RunningEngine engine(folder.path(), port);
+    engine.await(EngineState::Idle);
+    Watcher watcher(*engine);
+    const auto id = submit(engine);
+    watcher.until("job", {{"job", id}, {"state", "failed"}});
+    EXPECT_EQ(kept(id).error->kind, ErrorKind::Internal);
+    EXPECT_NE(kept(id).error->message.find("no place for the mirror"), std::string::npos);
+    engine.await(EngineState::Idle);
+    EXPECT_FALSE(port.cable.lit());
+    port.failsToPlace = false;
+    const auto again = submit(engine);
+    watcher.until("progress", {{"job", again}, {"step", 2}});
+    ASSERT_TRUE(engine->cancel(again));
 }
 
 TEST_F(EngineOnRig, PlacingUnderARealRigIsAUsageError) {

@@ -45,6 +45,7 @@ TEST(JobCheck, SampleNeedsANameThatAFileCanHave) {
 TEST(JobCheck, OthersNeedNone) {
     EXPECT_TRUE(check(JobRequest{.kind = JobKind::CalibrateMirror}));
     EXPECT_TRUE(check(JobRequest{.kind = JobKind::VerifyWhite}));
+    EXPECT_FALSE(check(JobRequest{.kind = JobKind::VerifyWhite, .name = "white"}));
 }
 
 TEST(JobCheck, NotesAreAtMost4096Bytes) {

@@ -6,6 +6,7 @@
 #include <condition_variable>
 #include <mutex>
 #include <optional>
+#include <stdexcept>
 #include <vector>
 
 #include "daemon/engine/rig_port.h"
@@ -142,6 +143,7 @@ public:
     void close() override {}
     [[nodiscard]] std::string placed() const override { return {}; }
     Result<bool> placeMirror(const proc::Wedge& wedge) override {
+        if (failsToPlace) throw std::runtime_error("no place for the mirror");
         cable.device().place(
             {.role = sim::Role::Mirror, .surface = nullptr, .wedge = {wedge.aboutX, wedge.aboutY}});
         return mirrorPlacesItself.load();
@@ -157,6 +159,7 @@ public:
 
     Cable cable;
     std::atomic<bool> mirrorPlacesItself{true};  ///< else a person is asked
+    std::atomic<bool> failsToPlace{false};       ///< placeMirror() throws
 
 private:
     std::atomic<int> opens_{0};
