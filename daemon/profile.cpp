@@ -19,6 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kLongestUs = 3.6e9;  // an hour
+constexpr Seconds kHour = std::chrono::hours(1), kDay = std::chrono::hours(24);
 constexpr std::string_view kIdealWhite = "1/pi";
 constexpr std::string_view kSchema = "gonio/rig/1";
 
@@ -31,6 +32,9 @@ public:
         const auto value = table_.at_path(key).value<double>();
         if (!value || !(*value > 0)) complain(key, "a number above 0");
         return value.value_or(1);
+    }
+    double positiveOr(std::string_view key, double otherwise) {
+        return table_.at_path(key) ? positive(key) : otherwise;
     }
     /// From 0 to below 1.
     double relative(std::string_view key) {
@@ -158,6 +162,10 @@ Result<RigProfile> readProfile(const fs::path& file) {
     if (white != kIdealWhite) profile.whiteReference = configDirectory() / white;
     profile.blackReflectance = keys.positive("references.black_reflectance");
     profile.blackRelativeUncertainty = keys.positive("references.black_relative_uncertainty");
+    ValidityLimits& good = profile.validity;
+    good.mirror = kDay * keys.positiveOr("validity.mirror_days", good.mirror / kDay);
+    good.tiles = kHour * keys.positiveOr("validity.tile_hours", good.tiles / kHour);
+    good.kelvin = keys.positiveOr("validity.kelvin", good.kelvin);
     if (keys.error()) return *keys.error();
     return profile;
 }

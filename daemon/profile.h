@@ -11,6 +11,13 @@
 
 namespace gonio::daemon {
 
+/// For how long a calibration is good.
+struct ValidityLimits {
+    Seconds mirror = std::chrono::hours(90 * 24);  ///< age of a lens map
+    Seconds tiles = std::chrono::hours(24);        ///< of the references
+    double kelvin = 5;                             ///< change of the LED board's temperature
+};
+
 struct RigProfile {
     std::string name;
     std::string hash;   ///< of the file's bytes: eight hexadecimal digits
@@ -22,6 +29,7 @@ struct RigProfile {
     std::filesystem::path whiteReference;  ///< empty ("1/pi" in the file): without a table
     double blackReflectance = 0;
     double blackRelativeUncertainty = 0;
+    ValidityLimits validity;
 };
 
 /// Where config/ is: $GONIO_CONFIG, beside the installed program, or the source tree.

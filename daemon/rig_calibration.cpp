@@ -3,7 +3,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "proc/formats/file_bytes.h"
 #include "proc/formats/gonio_exr.h"
 
 namespace gonio::daemon {
@@ -12,18 +11,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kLensSchema = "gonio/lens/1";
-
-/// The bytes of the rig's newest calibration of a kind.
-Result<std::string> newest(Store& store, const std::string& rig, const std::string& kind) {
-    const auto record = store.newestCalibration(rig, kind);
-    if (!record) return record.error();
-    if (!*record) {
-        return Error{ErrorKind::Quality,
-                     "rig " + rig + " has no " + kind + " calibration; place the " + kind +
-                         " and run: gonio calibrate " + kind};
-    }
-    return proc::readFile((*record)->file);
-}
 
 proc::CellSamples toSamples(const proc::CellSignal& signal) {
     proc::CellSamples samples = proc::CellSamples::missing(signal.size());
@@ -89,12 +76,6 @@ Result<LensRecord> decodeLens(std::string_view text, const std::string& name) {
     }
 }
 
-Result<LensRecord> loadLens(Store& store, const std::string& rig) {
-    const Result<std::string> text = newest(store, rig, "mirror");
-    if (!text) return text.error();
-    return decodeLens(*text, "lens map of " + rig);
-}
-
 Result<std::string> encodeReference(const ReferenceRecord& reference,
                                     const std::vector<Radians>& ledAngles) {
     proc::SampleSet set{.info = reference.info, .leds = {}};
@@ -123,14 +104,6 @@ Result<ReferenceRecord> decodeReference(std::string_view bytes, const std::strin
         }
     }
     return record;
-}
-
-Result<ReferenceRecord> loadReference(Store& store,
-                                      const std::string& rig,
-                                      const std::string& kind) {
-    const Result<std::string> bytes = newest(store, rig, kind);
-    if (!bytes) return bytes.error();
-    return decodeReference(*bytes, kind + " reference of " + rig);
 }
 
 }  // namespace gonio::daemon

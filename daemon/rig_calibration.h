@@ -1,5 +1,5 @@
 #pragma once
-// What a store knows of one rig: its lens map (JSON) and the binned signals of the two references
+// What is kept of a calibration: the lens map (JSON) and the binned signals of the two references
 // (a .gonio whose f holds the signal in electrons per second and steradian, u_random its standard
 // deviation). Their raw captures lie beside them, so that they can be binned again.
 
@@ -8,7 +8,6 @@
 #include <string_view>
 #include <vector>
 
-#include "daemon/store.h"
 #include "proc/core/result.h"
 #include "proc/optics/binning.h"
 #include "proc/optics/lens_fit.h"
@@ -28,9 +27,6 @@ struct LensRecord {
 [[nodiscard]] std::string encodeLens(const LensRecord& lens);
 /// `name` stands in errors.
 [[nodiscard]] Result<LensRecord> decodeLens(std::string_view text, const std::string& name);
-/// The rig's newest. Quality error that names the command to run when there is none.
-[[nodiscard]] Result<LensRecord> loadLens(Store& store, const std::string& rig);
-
 /// Signals of one placement: per LED, by ascending number, one per band.
 using PlacementSignals = std::vector<std::array<proc::CellSignal, 3>>;
 
@@ -44,10 +40,5 @@ struct ReferenceRecord {
 /// `name` stands in errors.
 [[nodiscard]] Result<ReferenceRecord> decodeReference(std::string_view bytes,
                                                       const std::string& name);
-/// The rig's newest; `kind` is "black" or "white". Quality error that names the command to run when
-/// there is none.
-[[nodiscard]] Result<ReferenceRecord> loadReference(Store& store,
-                                                    const std::string& rig,
-                                                    const std::string& kind);
 
 }  // namespace gonio::daemon

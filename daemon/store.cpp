@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <limits>
 
 #include "daemon/store_schema.h"
 
@@ -22,6 +23,18 @@ Result<fs::path> rootOf(const fs::path& chosen) {
         return Error{ErrorKind::Usage, "store: " + root.string() + ": " + failed.message()};
     }
     return absolute;
+}
+
+SqlValue orNull(const std::optional<double>& number) {
+    if (number) return *number;
+    return std::monostate{};
+}
+
+/// The only one there is, or none.
+Result<std::optional<CalibrationRecord>> only(Result<std::vector<CalibrationRecord>> found) {
+    if (!found) return found.error();
+    if (found->empty()) return std::optional<CalibrationRecord>();
+    return std::optional(std::move(found->front()));
 }
 
 }  // namespace
@@ -182,26 +195,60 @@ Result<CalibrationRecord> Store::addCalibration(CalibrationRecord record,
     const bool json = record.kind == "mirror";
     const Result<Objects> objects = keep(contents, json ? ".json" : ".gonio");
     if (!objects) return objects.error();
-    const auto inserted =
-        database_.run("INSERT INTO calibrations(rig, kind, date, file, raw) VALUES(?, ?, ?, ?, ?)",
-                      {record.rig, record.kind, record.dateUtc, objects->file, objects->raw});
+    const auto inserted = database_.run(
+        "INSERT INTO calibrations(rig, kind, date, file, raw, profile, celsius) "
+        "VALUES(?, ?, ?, ?, ?, ?, ?) RETURNING id",
+        {record.rig,
+         record.kind,
+         record.dateUtc,
+         objects->file,
+         objects->raw,
+         record.profileHash,
+         orNull(record.celsius)});
     if (!inserted) return inserted.error();
+    record.id = integerOf(inserted->front().front());
     record.file = pathOf(objects->file);
     record.raw = pathOf(objects->raw);
     return record;
 }
 
-Result<std::optional<CalibrationRecord>> Store::newestCalibration(const std::string& rig,
-                                                                  const std::string& kind) {
-    const auto rows = database_.run(
-        "SELECT date, file, raw FROM calibrations WHERE rig = ? AND kind = ? ORDER BY id DESC "
-        "LIMIT 1",
-        {rig, kind});
+CalibrationRecord Store::calibrationOf(const SqlRow& row) const {
+    CalibrationRecord record{.id = integerOf(row[0]),
+                             .rig = textOf(row[1]),
+                             .kind = textOf(row[2]),
+                             .dateUtc = textOf(row[3]),
+                             .profileHash = textOf(row[4]),
+                             .file = pathOf(row[6]),
+                             .raw = pathOf(row[7])};
+    if (const auto* celsius = std::get_if<double>(&row[5])) record.celsius = *celsius;
+    return record;
+}
+
+Result<std::vector<CalibrationRecord>> Store::calibrationsWhere(std::string_view clause,
+                                                                const SqlRow& values) {
+    const auto rows =
+        database_.run("SELECT id, rig, kind, date, profile, celsius, file, raw FROM calibrations " +
+                          std::string(clause),
+                      values);
     if (!rows) return rows.error();
-    if (rows->empty()) return std::optional<CalibrationRecord>();
-    const SqlRow& row = rows->front();
-    return std::optional(
-        CalibrationRecord{rig, kind, textOf(row[0]), pathOf(row[1]), pathOf(row[2])});
+    std::vector<CalibrationRecord> all;
+    for (const SqlRow& row : *rows) all.push_back(calibrationOf(row));
+    return all;
+}
+
+Result<std::optional<CalibrationRecord>> Store::newestCalibration(
+    const std::string& rig, const std::string& kind, std::optional<std::int64_t> before) {
+    constexpr std::int64_t kAll = std::numeric_limits<std::int64_t>::max();
+    return only(calibrationsWhere("WHERE rig = ? AND kind = ? AND id < ? ORDER BY id DESC LIMIT 1",
+                                  {rig, kind, before.value_or(kAll)}));
+}
+
+Result<std::optional<CalibrationRecord>> Store::calibration(std::int64_t id) {
+    return only(calibrationsWhere("WHERE id = ?", {id}));
+}
+
+Result<std::vector<CalibrationRecord>> Store::calibrations() {
+    return calibrationsWhere("ORDER BY id DESC", {});
 }
 
 }  // namespace gonio::daemon

@@ -10,6 +10,7 @@
 // Files first, then their row, then the answer: what was acknowledged survives kill -9 and power
 // loss, what was not is absent or whole. Nothing is ever overwritten.
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -32,9 +33,12 @@ struct SampleRecord {
 };
 
 struct CalibrationRecord {
-    std::string rig;   ///< serial
-    std::string kind;  ///< "mirror", "black" or "white"
+    std::int64_t id = 0;  ///< ascending with time
+    std::string rig;      ///< serial
+    std::string kind;     ///< "mirror", "black" or "white"
     std::string dateUtc;
+    std::string profileHash;          ///< of the rig profile; empty: not known
+    std::optional<double> celsius{};  ///< of the LED board when it was taken
     std::filesystem::path file;
     std::filesystem::path raw;  ///< empty: there is none
 };
@@ -76,14 +80,21 @@ public:
 
     [[nodiscard]] Result<CalibrationRecord> addCalibration(CalibrationRecord record,
                                                            const Contents& contents);
+    /// The newest of a rig and kind; of those with a number below `before`, if one is given.
     [[nodiscard]] Result<std::optional<CalibrationRecord>> newestCalibration(
-        const std::string& rig, const std::string& kind);
+        const std::string& rig, const std::string& kind, std::optional<std::int64_t> before = {});
+    [[nodiscard]] Result<std::optional<CalibrationRecord>> calibration(std::int64_t id);
+    /// Of all rigs, newest first.
+    [[nodiscard]] Result<std::vector<CalibrationRecord>> calibrations();
 
 private:
     Store(std::filesystem::path root, ObjectFolder objects, Database database)
         : root_(std::move(root)), objects_(std::move(objects)), database_(std::move(database)) {}
     [[nodiscard]] std::filesystem::path pathOf(const SqlValue& object) const;
     [[nodiscard]] SampleRecord sampleOf(const SqlRow& row) const;
+    [[nodiscard]] CalibrationRecord calibrationOf(const SqlRow& row) const;
+    [[nodiscard]] Result<std::vector<CalibrationRecord>> calibrationsWhere(std::string_view clause,
+                                                                           const SqlRow& values);
     [[nodiscard]] Result<std::string> freeName(const std::string& name);
     struct Objects {
         std::string file;

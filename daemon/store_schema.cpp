@@ -30,6 +30,10 @@ const std::vector<std::string> kMigrations{
     CREATE TABLE events(
         id INTEGER PRIMARY KEY, date TEXT NOT NULL, type TEXT NOT NULL, data TEXT NOT NULL);
     CREATE TABLE settings(name TEXT PRIMARY KEY, value TEXT NOT NULL);
+)",
+    R"(
+    ALTER TABLE calibrations ADD COLUMN profile TEXT;
+    ALTER TABLE calibrations ADD COLUMN celsius REAL;
 )"};
 
 }  // namespace

@@ -86,8 +86,7 @@ Frame toFrame(const WireFrame& wire, const FramePlan& plan) {
                 .saturatedPixels = wire.trailer.saturatedPixels,
                 .start = Microseconds(static_cast<std::int64_t>(wire.leader.exposureStartUs))};
     for (std::size_t i = 0; i < frame.celsius.size(); ++i) {
-        const std::int16_t hundredths = wire.leader.temperature[i];
-        if (hundredths != kNoTemperature) frame.celsius[i] = hundredths * 0.01;
+        frame.celsius[i] = celsius(wire.leader.temperature[i]);
     }
     return frame;
 }

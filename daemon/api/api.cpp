@@ -60,6 +60,9 @@ public:
     std::optional<std::uint64_t> whole(const std::string& name, bool needed = false) {
         return take<std::uint64_t>(name, &Json::is_number_unsigned, "a whole number", needed);
     }
+    bool flag(const std::string& name) {
+        return take<bool>(name, &Json::is_boolean, "true or false", false).value_or(false);
+    }
     std::optional<std::string> optionalText(const std::string& name) {
         return take<std::string>(name, &Json::is_string, "a text", false);
     }
@@ -234,6 +237,20 @@ Result<ApiReply> getJob(const Call& call) {
     return reply("job", toJson(*job));
 }
 
+/// Each with why it is not good for the rig as it is now.
+Result<ApiReply> getCalibrations(const Call& call) {
+    Result<Store> store = reading(call);
+    if (!store) return store.error();
+    const auto calibrations = store->calibrations();
+    if (!calibrations) return calibrations.error();
+    const RigNow now = call.engine.rigNow();
+    Json list = Json::array();
+    for (const CalibrationRecord& one : *calibrations) {
+        list.push_back(toJson(one, whyNot(one, now, call.engine.profile().validity)));
+    }
+    return reply("calibrations", {{"calibrations", std::move(list)}});
+}
+
 Result<ApiReply> getSessions(const Call& call) {
     Result<Logbook> book = logbook(call);
     if (!book) return book.error();
@@ -248,7 +265,10 @@ Result<ApiReply> postJob(const Call& call) {
     Fields fields(call.request.body);
     const Result<JobKind> kind = parseJobKind(fields.text("kind", true));
     const std::optional<std::string> effortName = fields.optionalText("effort");
-    JobRequest job{.name = fields.text("name"), .notes = fields.text("notes")};
+    JobRequest job{.name = fields.text("name"),
+                   .notes = fields.text("notes"),
+                   .force = fields.flag("force"),
+                   .calibration = fields.text("calibration")};
     job.limit = fields.number("limit").value_or(job.limit);
     if (Result<void> good = fields.verdict(); !good) return good.error();
     if (!kind) return kind.error();
@@ -341,6 +361,7 @@ constexpr std::array kRoutes{
     Route{"GET", "/api/v1/jobs/*", getJob},
     Route{"POST", "/api/v1/jobs/*/cancel", postCancel},
     Route{"POST", "/api/v1/jobs/*/proceed", postProceed},
+    Route{"GET", "/api/v1/calibrations", getCalibrations},
     Route{"GET", "/api/v1/samples", getSamples},
     Route{"GET", "/api/v1/samples/*/file", getSampleFile},
     Route{"GET", "/api/v1/samples/*/raw", getSampleRaw},

@@ -11,10 +11,7 @@ using Json = nlohmann::ordered_json;
 
 Json orNull(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
 
-Json degreesOrNull(std::int16_t hundredths) {
-    constexpr std::int16_t kNoSensor = -32768;
-    return hundredths == kNoSensor ? Json(nullptr) : Json(hundredths * 0.01);
-}
+Json orNull(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
 
 Json toJson(const driver::Status& rig) {
     const bool may = (rig.interlock & driver::interlock::kMayLight) == driver::interlock::kMayLight;
@@ -22,8 +19,8 @@ Json toJson(const driver::Status& rig) {
             {"lit", rig.ledOn != 0},
             {"frames_made", rig.framesMade},
             {"uptime_s", static_cast<double>(rig.timeUs) * 1e-6},
-            {"led_board_celsius", degreesOrNull(rig.temperature[0])},
-            {"sensor_celsius", degreesOrNull(rig.temperature[1])},
+            {"led_board_celsius", orNull(driver::celsius(rig.temperature[0]))},
+            {"sensor_celsius", orNull(driver::celsius(rig.temperature[1]))},
             {"fault", rig.fault == 0 ? Json(nullptr) : Json(driver::statusName(rig.fault))}};
 }
 
@@ -93,6 +90,16 @@ Json toJson(const SampleRecord& sample) {
             {"rig", sample.rig},
             {"date", sample.dateUtc},
             {"session", orNull(sample.session)}};
+}
+
+Json toJson(const CalibrationRecord& calibration, const std::string& whyNot) {
+    return {{"id", calibration.id},
+            {"rig", calibration.rig},
+            {"kind", calibration.kind},
+            {"date", calibration.dateUtc},
+            {"profile", orNull(calibration.profileHash)},
+            {"led_board_celsius", orNull(calibration.celsius)},
+            {"why_not", orNull(whyNot)}};
 }
 
 std::string document(const std::string& name, Json content) {

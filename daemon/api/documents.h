@@ -13,6 +13,10 @@ namespace gonio::daemon {
 [[nodiscard]] nlohmann::ordered_json toJson(const RigListing& rig);
 [[nodiscard]] nlohmann::ordered_json toJson(const SampleRecord& sample);
 
+/// `whyNot`: why it is not good now; empty: it is.
+[[nodiscard]] nlohmann::ordered_json toJson(const CalibrationRecord& calibration,
+                                            const std::string& whyNot);
+
 /// Text of a document with its schema in front: {"schema": "gonio/<name>/1", ...}.
 [[nodiscard]] std::string document(const std::string& name, nlohmann::ordered_json content);
 

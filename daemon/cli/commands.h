@@ -49,9 +49,18 @@ struct MeasureOptions {
     std::string name;
     Effort effort = Effort::Standard;
     std::string notes;
+    bool force = false;            ///< with calibrations that are no longer good, too
     std::filesystem::path output;  ///< a copy of the .gonio; empty: the store only
 };
 Result<void> measure(const CommonOptions& common, const MeasureOptions& options);
+
+struct RecalibrateOptions {
+    std::string name;
+    std::string calibration;       ///< 10+11+12, or one number; empty: the newest
+    std::filesystem::path output;  ///< a copy of the .gonio; empty: the store only
+};
+Result<void> recalibrate(const CommonOptions& common, const RecalibrateOptions& options);
+Result<void> calibrations(const CommonOptions& common);
 
 Result<void> status(const CommonOptions& common);
 Result<void> rigs(const CommonOptions& common);

@@ -1,4 +1,5 @@
-// Commands that ask the daemon, or tell it: status, rigs, session, jobs, samples, watch, sim place.
+// Commands that ask the daemon, or tell it: status, rigs, session, jobs, samples, calibrations,
+// watch, sim place.
 
 #include <filesystem>
 #include <iostream>
@@ -139,6 +140,15 @@ Result<void> samples(const CommonOptions& common) {
     const auto answer = DaemonClient(common.socketPath()).get("/api/v1/samples");
     return shown(common, answer, [](const Json& json) {
         printList(json.at("samples"), {"name", "date", "rig", "session"}, "no samples yet");
+    });
+}
+
+Result<void> calibrations(const CommonOptions& common) {
+    const auto answer = DaemonClient(common.socketPath()).get("/api/v1/calibrations");
+    return shown(common, answer, [](const Json& json) {
+        printList(json.at("calibrations"),
+                  {"id", "kind", "rig", "date", "led_board_celsius", "why_not"},
+                  "no calibrations yet; run: gonio calibrate mirror, black, white");
     });
 }
 

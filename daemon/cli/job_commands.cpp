@@ -1,5 +1,5 @@
 // Commands that begin a job of the daemon's and follow it to its end: calibrate, verify-white,
-// measure.
+// measure, recalibrate.
 
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -43,6 +43,25 @@ std::string measuredLine(const Json& done) {
            " computing; " + text(done, "file");
 }
 
+std::string recalibratedLine(const Json& done) {
+    const std::string with = text(done, "name") + " with calibration " + text(done, "calibration");
+    if (done.at("identical").get<bool>()) return with + ": the same to the last bit";
+    const Json& earlier = done.at("earlier");
+    return with + " (was " + text(done, "before") + ")" +
+           (earlier.is_string() ? "; the earlier one is " + earlier.get<std::string>() : "") +
+           "; " + text(done, "file");
+}
+
+/// A sample's .gonio, unless the path is empty.
+Result<void> copy(const DaemonClient& client,
+                  const std::string& sample,
+                  const std::filesystem::path& output) {
+    if (output.empty()) return {};
+    const auto bytes = client.get("/api/v1/samples/" + sample + "/file");
+    if (!bytes) return bytes.error();
+    return proc::writeFile(output, *bytes);
+}
+
 }  // namespace
 
 Result<void> calibrate(const CommonOptions& common, Reference reference) {
@@ -72,16 +91,24 @@ Result<void> measure(const CommonOptions& common, const MeasureOptions& options)
     const Json request{{"kind", "measure"},
                        {"name", options.name},
                        {"effort", std::string(name(options.effort))},
-                       {"notes", options.notes}};
+                       {"notes", options.notes},
+                       {"force", options.force}};
     const auto done = FollowedJob(common, client, options.name)
                           .run(request.dump(-1, ' ', false, Json::error_handler_t::replace));
     if (!done) return done.error();
-    if (!options.output.empty()) {
-        const auto bytes = client.get("/api/v1/samples/" + options.name + "/file");
-        if (!bytes) return bytes.error();
-        if (Result<void> copied = proc::writeFile(options.output, *bytes); !copied) return copied;
-    }
+    if (Result<void> copied = copy(client, options.name, options.output); !copied) return copied;
     return shown(common, done, [](const Json& json) { std::cout << measuredLine(json) << "\n"; });
+}
+
+Result<void> recalibrate(const CommonOptions& common, const RecalibrateOptions& options) {
+    const DaemonClient client(common.socketPath());
+    const Json request{
+        {"kind", "recalibrate"}, {"name", options.name}, {"calibration", options.calibration}};
+    const auto done = FollowedJob(common, client, options.name).run(request.dump());
+    if (!done) return done.error();
+    if (Result<void> copied = copy(client, options.name, options.output); !copied) return copied;
+    return shown(
+        common, done, [](const Json& json) { std::cout << recalibratedLine(json) << "\n"; });
 }
 
 }  // namespace gonio::daemon

@@ -38,6 +38,7 @@ struct Program {
     VerifyOptions verify;
     std::string limit = "1%";
     MeasureOptions measure;
+    RecalibrateOptions recalibrate;
     SessionOptions session;
     WatchOptions watch;
     std::string effort = "standard";
@@ -138,7 +139,17 @@ void Program::addMeasuring() {
     sub->add_option("name", measure.name, "the sample's name")->required();
     sub->add_option("--effort", effort, "draft, standard or reference");
     sub->add_option("--notes", measure.notes, "operator's notes, kept with the sample");
+    sub->add_flag("--force", measure.force, "with calibrations that are no longer good, too");
     sub->add_option("-o,--output", measure.output, "also write the .gonio here");
+
+    sub = command(app, "recalibrate", "work a stored sample out again", [this] {
+        return daemon::recalibrate(common, recalibrate);
+    });
+    sub->add_option("name", recalibrate.name, "the sample's name")->required();
+    sub->add_option("--calibration",
+                    recalibrate.calibration,
+                    "10+11+12, or one number in the place of its kind; default: the newest");
+    sub->add_option("-o,--output", recalibrate.output, "also write the .gonio here");
 }
 
 void Program::addDaemon() {
@@ -147,6 +158,9 @@ void Program::addDaemon() {
     });
     command(app, "rigs", "the rigs that the daemon could use", [this] { return rigs(common); });
     command(app, "samples", "the samples of the store", [this] { return samples(common); });
+    command(app, "calibrations", "those of the store, and why one is not good now", [this] {
+        return calibrations(common);
+    });
     command(app, "doctor", "what stands between this computer and a measurement", [this] {
         return doctor(common);
     });

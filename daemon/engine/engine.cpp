@@ -85,7 +85,7 @@ Result<JobRecord> Engine::submit(const JobRequest& request) {
 }
 
 Result<JobRecord> Engine::begin(const JobRequest& request) {
-    if (status().state != EngineState::Idle) return noRig();
+    if (request.kind != JobKind::Recalibrate && status().state != EngineState::Idle) return noRig();
     Result<JobRecord> record = logbook_.beginJob({.kind = std::string(name(request.kind)),
                                                   .name = request.name,
                                                   .startedUtc = world_.utcNow()});
@@ -175,6 +175,14 @@ Result<void> Engine::place(const PlaceRequest& request) {
 EngineStatus Engine::status() const {
     const std::scoped_lock lock(mutex_);
     return status_;
+}
+
+RigNow Engine::rigNow() const {
+    const EngineStatus now = status();
+    return {.serial = now.serial,
+            .profileHash = profile_.hash,
+            .celsius = now.rig ? driver::celsius(now.rig->temperature[0]) : std::nullopt,
+            .dateUtc = world_.utcNow()};
 }
 
 // ---- what the owner tells ----

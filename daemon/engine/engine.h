@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/calibrations.h"
 #include "daemon/engine/engine_state.h"
 #include "daemon/engine/event_log.h"
 #include "daemon/engine/job.h"
@@ -83,11 +84,14 @@ public:
 
     // From any thread. Busy while a job runs, or when the engine has ended.
     [[nodiscard]] EngineStatus status() const;
+    /// What a calibration has to be good for.
+    [[nodiscard]] RigNow rigNow() const;
     [[nodiscard]] const std::filesystem::path& storeRoot() const { return store_.root(); }
     [[nodiscard]] const RigProfile& profile() const { return profile_; }
     [[nodiscard]] EventLog& events() { return events_; }
     [[nodiscard]] Result<std::vector<RigListing>> rigs() { return port_.list(); }
-    /// Begins it: once this has returned the job is in the logbook. NoRig when there is none.
+    /// Begins it: once this has returned the job is in the logbook. NoRig when it needs a rig and
+    /// there is none.
     Result<JobRecord> submit(const JobRequest& request);
     /// Ends the running job at its next step; a Usage error when it is not the running one.
     Result<void> cancel(std::int64_t job);
@@ -141,6 +145,7 @@ private:
     [[nodiscard]] Error noRig() const;
     void runPending(const std::stop_token& stop);
     [[nodiscard]] Result<std::string> runOn(const JobRequest& request, Monitor& monitor);
+    [[nodiscard]] Result<std::string> runAtDesk(const JobRequest& request);
     void settle(JobRecord& job, const Result<std::string>& outcome, const Monitor& monitor);
     [[nodiscard]] Result<std::uint64_t> reserveSteps();
 

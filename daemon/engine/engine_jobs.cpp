@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "daemon/alongside.h"
 #include "daemon/engine/engine.h"
 #include "daemon/guarded.h"
 #include "proc/core/log.h"
@@ -143,6 +144,15 @@ Result<std::string> Engine::runOn(const JobRequest& request, Monitor& monitor) {
     return outcome;
 }
 
+/// A job that needs no rig; one that is there is kept alive meanwhile.
+Result<std::string> Engine::runAtDesk(const JobRequest& request) {
+    const Desk desk{.store = store_, .profile = profile_, .utcNow = world_.utcNow};
+    const auto work = [&] { return recalibrate(desk, request); };
+    if (!rig_) return guarded("recalibrate", work);
+    return alongside(
+        *rig_, [this] { world_.alive(); }, work);
+}
+
 /// How it ended, and whether the rig is still there.
 void Engine::settle(JobRecord& job, const Result<std::string>& outcome, const Monitor& monitor) {
     job.endedUtc = world_.utcNow();
@@ -153,6 +163,7 @@ void Engine::settle(JobRecord& job, const Result<std::string>& outcome, const Mo
     }
     job.error = outcome.error();
     job.state = monitor.verdict();
+    if (!rig_) return;
     if (const auto there = rig_->status(); !there) {
         job.state = JobState::Interrupted;
         lost(outcome.error());
@@ -169,7 +180,9 @@ void Engine::runPending(const std::stop_token& stop) {
     log::info("job " + std::to_string(job.record.id) + ": " + what);
     advance(EngineEvent::JobBegun);
     Monitor monitor(*this, stop, what);
-    const Result<std::string> outcome = runOn(job.request, monitor);
+    const bool atDesk = job.request.kind == JobKind::Recalibrate;
+    const Result<std::string> outcome =
+        atDesk ? runAtDesk(job.request) : runOn(job.request, monitor);
     settle(job.record, outcome, monitor);
     if (job.record.error) log::warning(job.record.error->message);
     if (Result<void> kept = logbook_.endJob(job.record); !kept) log::error(kept.error().message);

@@ -6,8 +6,12 @@
 namespace gonio::daemon {
 namespace {
 
-constexpr std::array<std::string_view, 5> kKinds{
-    "calibrate-mirror", "calibrate-black", "calibrate-white", "verify-white", "measure"};
+constexpr std::array<std::string_view, 6> kKinds{"calibrate-mirror",
+                                                 "calibrate-black",
+                                                 "calibrate-white",
+                                                 "verify-white",
+                                                 "measure",
+                                                 "recalibrate"};
 constexpr std::size_t kLongestNotes = 4096;
 
 }  // namespace
@@ -24,10 +28,12 @@ Result<JobKind> parseJobKind(std::string_view text) {
 }
 
 Result<void> check(const JobRequest& request) {
-    if (request.kind == JobKind::Measure) {
+    const bool ofSample = request.kind == JobKind::Measure || request.kind == JobKind::Recalibrate;
+    if (ofSample) {
         if (Result<void> good = checkSampleName(request.name); !good) return good;
     } else if (!request.name.empty()) {
-        return Error{ErrorKind::Usage, "name '" + request.name + "': only a measurement has one"};
+        return Error{ErrorKind::Usage,
+                     "name '" + request.name + "': only measure and recalibrate have one"};
     }
     if (request.notes.size() > kLongestNotes) {
         return Error{ErrorKind::Usage, "notes: more than 4096 bytes"};

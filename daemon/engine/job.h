@@ -20,18 +20,21 @@ enum class JobKind {
     CalibrateBlack,
     CalibrateWhite,
     VerifyWhite,
-    Measure
+    Measure,
+    Recalibrate  ///< of a stored sample: needs no rig
 };
 [[nodiscard]] std::string_view name(JobKind kind);
-/// "calibrate-mirror", ..., "measure"; anything else is a Usage error that lists them.
+/// "calibrate-mirror", ..., "recalibrate"; anything else is a Usage error that lists them.
 [[nodiscard]] Result<JobKind> parseJobKind(std::string_view text);
 
 struct JobRequest {
     JobKind kind = JobKind::Measure;
-    std::string name;  ///< of the sample; empty for the others
+    std::string name;  ///< of the sample to measure or recalibrate; empty for the others
     Effort effort = Effort::Standard;
-    std::string notes;    ///< the operator's, kept with the sample
-    double limit = 0.01;  ///< verify-white: the largest relative change that passes
+    std::string notes;        ///< the operator's, kept with the sample
+    double limit = 0.01;      ///< verify-white: the largest relative change that passes
+    bool force = false;       ///< measure: with calibrations that are no longer good, too
+    std::string calibration;  ///< recalibrate: which (calibrations.h); empty: the newest
 };
 /// Usage error for what no rig can do.
 [[nodiscard]] Result<void> check(const JobRequest& request);
@@ -66,5 +69,16 @@ struct JobBench {
 
 /// The document that came of it: JSON, schema gonio/calibrate-mirror/1, ..., gonio/measure/1.
 [[nodiscard]] Result<std::string> runJob(const JobBench& bench, const JobRequest& request);
+
+/// What working a stored sample out again needs; all borrowed.
+struct Desk {
+    Store& store;
+    const RigProfile& profile;
+    std::function<std::string()> utcNow;
+};
+/// Applies a calibration to the raw capture of a stored sample. With the one that it was measured
+/// with the same bytes come out, and nothing is kept; else the sample of that name is the new one,
+/// and the earlier is kept. Document of schema gonio/recalibrate/1.
+[[nodiscard]] Result<std::string> recalibrate(const Desk& desk, const JobRequest& request);
 
 }  // namespace gonio::daemon

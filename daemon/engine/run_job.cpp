@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/alongside.h"
+#include "daemon/calibrations.h"
 #include "daemon/engine/job.h"
 #include "daemon/measurement.h"
 #include "proc/core/log.h"
@@ -64,6 +65,9 @@ private:
     Result<Captured> capture(const BracketPlan& plan, int darkFrames);
     [[nodiscard]] Result<void> expectPlaced(const std::string& reference) const;
     Result<void> placeMirror(const proc::Wedge& wedge);
+    [[nodiscard]] std::optional<double> celsius() const;
+    [[nodiscard]] Result<void> checkValidity(const CalibrationSet& set) const;
+    [[nodiscard]] Result<void> fitsThisRig(const ReferenceRecord& reference) const;
     [[nodiscard]] Result<ReferenceRecord> reference(const std::string& kind) const;
     void finish(proc::SampleInfo& info, const Captured& captured) const;
     Result<SampleRecord> keep(const proc::SampleSet& set, std::vector<proc::RawState> states);
@@ -104,7 +108,9 @@ void JobRun::finish(proc::SampleInfo& info, const Captured& captured) const {
 }
 
 Result<Captured> JobRun::capture(const BracketPlan& plan, int darkFrames) {
-    const Result<LensRecord> lens = loadLens(bench_.store, serial_);
+    const Result<CalibrationRecord> mirror = newestOf(bench_.store, serial_, "mirror");
+    if (!mirror) return mirror.error();
+    const Result<LensRecord> lens = readLens(*mirror);
     if (!lens) return lens.error();
     const Bench bench = measuring();
     bench_.monitor.begin(placementSteps(bench));
@@ -133,13 +139,47 @@ Result<void> JobRun::placeMirror(const proc::Wedge& wedge) {
 }
 
 /// A reference is of this rig's LEDs, or its cells would be taken for others'.
-Result<ReferenceRecord> JobRun::reference(const std::string& kind) const {
-    Result<ReferenceRecord> found = loadReference(bench_.store, serial_, kind);
-    if (!found || found->signals.size() == leds()) return found;
+Result<void> JobRun::fitsThisRig(const ReferenceRecord& reference) const {
+    if (reference.signals.size() == leds()) return {};
+    const std::string& kind = reference.info.name;
     return Error{ErrorKind::Quality,
                  "the " + kind + " reference of " + serial_ + " has " +
-                     std::to_string(found->signals.size()) + " LEDs, the rig " +
+                     std::to_string(reference.signals.size()) + " LEDs, the rig " +
                      std::to_string(leds()) + "; run: gonio calibrate " + kind};
+}
+
+/// The newest, as the newest lens map bins it.
+Result<ReferenceRecord> JobRun::reference(const std::string& kind) const {
+    const Result<CalibrationRecord> record = newestOf(bench_.store, serial_, kind);
+    if (!record) return record.error();
+    const Result<CalibrationRecord> mirror = newestOf(bench_.store, serial_, "mirror");
+    if (!mirror) return mirror.error();
+    const Result<LensRecord> lens = readLens(*mirror);
+    if (!lens) return lens.error();
+    auto found = whileAlive([&] { return readReference(bench_.store, *record, *mirror, *lens); });
+    if (!found) return found;
+    if (Result<void> fits = fitsThisRig(*found); !fits) return fits.error();
+    return found;
+}
+
+std::optional<double> JobRun::celsius() const {
+    const auto& status = bench_.rig.link().status();
+    return status ? driver::celsius(status->temperature[0]) : std::nullopt;
+}
+
+/// Quality error for calibrations that are no longer good.
+Result<void> JobRun::checkValidity(const CalibrationSet& set) const {
+    const RigNow now{.serial = serial_,
+                     .profileHash = bench_.profile.hash,
+                     .celsius = celsius(),
+                     .dateUtc = bench_.utcNow()};
+    for (const CalibrationRecord* one : {&set.mirror, &set.black, &set.white}) {
+        const std::string why = whyNot(*one, now, bench_.profile.validity);
+        if (why.empty()) continue;
+        if (!request_.force) return Error{ErrorKind::Quality, why + ", or measure with --force"};
+        log::warning(why + "; used all the same");
+    }
+    return {};
 }
 
 Result<Json> JobRun::calibrateMirror() {
@@ -153,9 +193,12 @@ Result<Json> JobRun::calibrateMirror() {
     bench_.monitor.captured();
     lens->dateUtc = bench_.utcNow();
     const auto kept = whileAlive([&] {
-        return bench_.store.addCalibration(
-            {.rig = serial_, .kind = "mirror", .dateUtc = lens->dateUtc},
-            {.file = encodeLens(*lens)});
+        return bench_.store.addCalibration({.rig = serial_,
+                                            .kind = "mirror",
+                                            .dateUtc = lens->dateUtc,
+                                            .profileHash = bench_.profile.hash,
+                                            .celsius = celsius()},
+                                           {.file = encodeLens(*lens)});
     });
     if (!kept) return kept.error();
     return Json{{"schema", "gonio/calibrate-mirror/1"},
@@ -191,7 +234,11 @@ Result<Json> JobRun::calibrateTile(bool white) {
         if (!raw) return raw.error();
         const Result<std::string> bytes = encodeReference({about, captured->signals}, angles);
         if (!bytes) return bytes.error();
-        return bench_.store.addCalibration({.rig = serial_, .kind = kind, .dateUtc = about.dateUtc},
+        return bench_.store.addCalibration({.rig = serial_,
+                                            .kind = kind,
+                                            .dateUtc = about.dateUtc,
+                                            .profileHash = bench_.profile.hash,
+                                            .celsius = celsius()},
                                            {.file = *bytes, .raw = *raw});
     });
     if (!kept) return kept.error();
@@ -286,12 +333,14 @@ Result<SampleRecord> JobRun::keep(const proc::SampleSet& set, std::vector<proc::
 }
 
 Result<Json> JobRun::measure() {
-    const Result<LensRecord> lens = loadLens(bench_.store, serial_);
-    if (!lens) return lens.error();
-    const Result<ReferenceRecord> black = reference("black");
-    if (!black) return black.error();
-    const Result<ReferenceRecord> white = reference("white");
-    if (!white) return white.error();
+    const Result<CalibrationSet> set = newestSet(bench_.store, serial_);
+    if (!set) return set.error();
+    if (Result<void> good = checkValidity(*set); !good) return good.error();
+    const auto loaded = whileAlive([&] { return loadSet(bench_.store, *set); });
+    if (!loaded) return loaded.error();
+    for (const ReferenceRecord* one : {&loaded->black, &loaded->white}) {
+        if (Result<void> fits = fitsThisRig(*one); !fits) return fits.error();
+    }
     const Result<References> certified = loadReferences(bench_.profile);
     if (!certified) return certified.error();
     Result<Captured> captured = capture(sampleBracket(request_.effort), kDarkFrames);
@@ -300,30 +349,32 @@ Result<Json> JobRun::measure() {
     proc::SampleInfo about = info(request_.name);
     about.effort = gonio::name(request_.effort);
     about.referenceCertificate = certified->white->certificate().citation;
-    about.calibrationId = serial_ + "/" + white->info.dateUtc;
+    about.calibrationId = set->id();
     finish(about, *captured);
-    proc::SampleSet set;
+    proc::SampleSet sample;
     const std::vector<Radians> angles = bench_.rig.identify().ledAngles;
     const auto kept = whileAlive([&] {
         const Stopwatch calibrating(bench_.computer);
-        set = calibrateSample(captured->signals,
-                              angles,
-                              {*lens, *white, *black, *certified, bench_.profile},
-                              std::move(about));
-        set.info.computeSeconds += calibrating.elapsed().count();
-        return keep(set, std::move(captured->raw.states));
+        sample = calibrateSample(
+            captured->signals,
+            angles,
+            {loaded->lens, loaded->white, loaded->black, *certified, bench_.profile},
+            std::move(about));
+        sample.info.computeSeconds += calibrating.elapsed().count();
+        return keep(sample, std::move(captured->raw.states));
     });
     if (!kept) return kept.error();
     return Json{{"schema", "gonio/measure/1"},
                 {"name", request_.name},
                 {"file", kept->file.string()},
                 {"raw", kept->raw.string()},
-                {"effort", set.info.effort},
-                {"measured_cells", measuredCells(set)},
-                {"median_relative_uncertainty", set.info.achievedUncertainty.value_or(0)},
+                {"effort", sample.info.effort},
+                {"calibration", set->id()},
+                {"measured_cells", measuredCells(sample)},
+                {"median_relative_uncertainty", sample.info.achievedUncertainty.value_or(0)},
                 {"chi_square_per_freedom", captured->chiSquarePerFreedom},
-                {"rig_seconds", set.info.rigSeconds},
-                {"compute_seconds", set.info.computeSeconds}};
+                {"rig_seconds", sample.info.rigSeconds},
+                {"compute_seconds", sample.info.computeSeconds}};
 }
 
 Result<Json> run(JobRun& job, JobKind kind) {
@@ -333,6 +384,7 @@ Result<Json> run(JobRun& job, JobKind kind) {
         case JobKind::CalibrateWhite: return job.calibrateTile(true);
         case JobKind::VerifyWhite: return job.verifyWhite();
         case JobKind::Measure: return job.measure();
+        case JobKind::Recalibrate: break;  // needs no rig
     }
     return Error{ErrorKind::Internal, "no such job"};
 }

@@ -87,6 +87,11 @@ struct Limits {
     bool operator==(const Limits&) const = default;
 };
 
+/// Degrees Celsius of a temperature field; empty: there is no such sensor.
+[[nodiscard]] inline std::optional<double> celsius(std::int16_t hundredths) {
+    return hundredths == kNoTemperature ? std::nullopt : std::optional(hundredths * 0.01);
+}
+
 struct Status {
     std::uint16_t sequence = 0;
     std::uint32_t bootId = 0;

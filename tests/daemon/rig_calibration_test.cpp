@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "daemon/calibrations.h"
 #include "tests/support/temp_folder.h"
 
 namespace gonio::daemon {
@@ -60,7 +61,9 @@ protected:
 TEST_F(RigCalibrationInStore, LensSurvivesToTheLastBit) {
     const LensRecord lens = lensRecord();
     keep("mirror", encodeLens(lens));
-    const auto read = loadLens(*store, "R1");
+    const auto mirror = newestOf(*store, "R1", "mirror");
+    ASSERT_TRUE(mirror) << mirror.error().message;
+    const auto read = readLens(*mirror);
     ASSERT_TRUE(read) << read.error().message;
     EXPECT_EQ(read->fit.map.parameters(), lens.fit.map.parameters());
     EXPECT_EQ(read->fit.covariance, lens.fit.covariance);
@@ -71,7 +74,7 @@ TEST_F(RigCalibrationInStore, LensSurvivesToTheLastBit) {
 }
 
 TEST_F(RigCalibrationInStore, MissingAndBrokenLensSayWhatToRun) {
-    const auto missing = loadLens(*store, "R1");
+    const auto missing = newestOf(*store, "R1", "mirror");
     ASSERT_FALSE(missing);
     EXPECT_EQ(missing.error().kind, ErrorKind::Quality);
     EXPECT_NE(missing.error().message.find("gonio calibrate mirror"), std::string::npos);
@@ -89,8 +92,12 @@ TEST_F(RigCalibrationInStore, ReferenceSurvivesToFloatPrecision) {
     const proc::SampleInfo info{.name = "white", .rigSerial = "R1"};
     const auto bytes = encodeReference({info, kept}, {20_deg});
     ASSERT_TRUE(bytes) << bytes.error().message;
+    keep("mirror", encodeLens(lensRecord()));
     keep("white", *bytes);
-    const auto read = loadReference(*store, "R1", "white");
+    const auto mirror = newestOf(*store, "R1", "mirror");
+    const auto white = newestOf(*store, "R1", "white");
+    ASSERT_TRUE(mirror && white);
+    const auto read = readReference(*store, *white, *mirror, lensRecord());
     ASSERT_TRUE(read) << read.error().message;
     EXPECT_EQ(read->info.rigSerial, "R1");
     ASSERT_EQ(read->signals.size(), 1U);
@@ -113,7 +120,7 @@ TEST_F(RigCalibrationInStore, ReferenceSurvivesToFloatPrecision) {
 }
 
 TEST_F(RigCalibrationInStore, MissingReferenceSaysWhatToRun) {
-    const auto read = loadReference(*store, "R1", "black");
+    const auto read = newestOf(*store, "R1", "black");
     ASSERT_FALSE(read);
     EXPECT_EQ(read.error().kind, ErrorKind::Quality);
     EXPECT_NE(read.error().message.find("gonio calibrate black"), std::string::npos);

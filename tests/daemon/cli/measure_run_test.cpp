@@ -136,6 +136,23 @@ void expectUsable(const Bench& gonio, const Json& measured) {
     }
 }
 
+/// A sample worked out again is the same to the last bit with its own calibration, another with
+/// another, and the first again with the first.
+void expectRecalibrates(const Bench& gonio, const Json& measured) {
+    const std::string name = measured["name"], own = measured["calibration"];
+    EXPECT_TRUE(gonio({"recalibrate", name})["identical"]);
+    gonio({"sim", "place", "white"});
+    gonio({"calibrate", "white"});
+    const Json other = gonio({"recalibrate", name});
+    EXPECT_FALSE(other["identical"]);
+    EXPECT_EQ(other["before"], own);
+    EXPECT_NE(other["calibration"], own);
+    EXPECT_EQ(other["earlier"], name + ".1");
+    const Json back = gonio({"recalibrate", name, "--calibration", own});
+    EXPECT_EQ(back["file"], measured["file"]) << "files are named by their content";
+    EXPECT_EQ(gonio({"calibrations"})["calibrations"].size(), 4U);
+}
+
 TEST(MeasureRun, WithoutSystematicErrorsNoiseExplainsTheRest) {
     const Bench gonio;
     gonio.calibrate("none", 1);
@@ -150,6 +167,7 @@ TEST(MeasureRun, WithoutSystematicErrorsNoiseExplainsTheRest) {
     EXPECT_GE(inside / cells, 0.94);
     EXPECT_LE(inside / cells, 0.97);
     expectUsable(gonio, all.runs[1]);
+    expectRecalibrates(gonio, all.runs[1]);
 }
 
 TEST(MeasureRun, SameSeedGivesTheSameBytes) {

@@ -432,6 +432,17 @@ TEST_F(EngineOnRig, OpenInterlockIsAFaultUntilItIsClosed) {
     EXPECT_EQ(engine->status().obstacle, "");
 }
 
+TEST_F(EngineOnRig, StoredSampleIsWorkedOutAgainWithoutARig) {
+    port.cable.pull();
+    RunningEngine engine(folder.path(), port);
+    ASSERT_TRUE(waitUntil([&] { return !engine->status().obstacle.empty(); }));
+    Watcher watcher(*engine);
+    const auto id = submit(engine, {.kind = JobKind::Recalibrate, .name = "tile"});
+    watcher.until("job", {{"job", id}, {"state", "failed"}});
+    EXPECT_EQ(kept(id).error->kind, ErrorKind::File) << "there is no such sample";
+    EXPECT_EQ(engine->status().state, EngineState::Offline);
+}
+
 TEST_F(EngineOnRig, ExceptionEndsTheJobAndNotTheDaemon) {
     port.failsToPlace = true;
     RunningEngine engine(folder.path(), port);

@@ -12,7 +12,8 @@ constexpr JobKind kKinds[] = {JobKind::CalibrateMirror,
                               JobKind::CalibrateBlack,
                               JobKind::CalibrateWhite,
                               JobKind::VerifyWhite,
-                              JobKind::Measure};
+                              JobKind::Measure,
+                              JobKind::Recalibrate};
 
 TEST(JobKind, ComesBackFromItsName) {
     for (const JobKind kind : kKinds) EXPECT_EQ(*parseJobKind(name(kind)), kind) << name(kind);

@@ -1,0 +1,119 @@
+// Works a stored sample out again, with another calibration of its rig.
+
+#include <nlohmann/json.hpp>
+
+#include "daemon/calibrations.h"
+#include "daemon/engine/job.h"
+#include "daemon/measurement.h"
+#include "daemon/references.h"
+#include "proc/formats/file_bytes.h"
+#include "proc/formats/gonio_exr.h"
+
+namespace gonio::daemon {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The set that a sample was measured with; the newest where its name is not one of these.
+Result<CalibrationSet> measuredWith(Store& store, const proc::SampleInfo& info) {
+    Result<CalibrationSet> newest = newestSet(store, info.rigSerial);
+    if (!newest) return newest;
+    Result<CalibrationSet> own = parseSet(store, info.calibrationId, *newest);
+    return own ? own : newest;
+}
+
+Result<CalibrationSet> wantedSet(Store& store,
+                                 const proc::SampleInfo& info,
+                                 const std::string& calibration) {
+    if (calibration.empty()) return newestSet(store, info.rigSerial);
+    const Result<CalibrationSet> own = measuredWith(store, info);
+    if (!own) return own;
+    return parseSet(store, calibration, *own);
+}
+
+/// The signals hold every LED and band that the sample has.
+Result<void> checkComplete(const PlacementSignals& signals,
+                           const proc::SampleSet& sample,
+                           const std::string& file) {
+    bool complete = signals.size() == sample.leds.size();
+    for (const auto& led : signals) {
+        for (const proc::CellSignal& band : led) complete = complete && band.size() > 0;
+    }
+    if (complete) return {};
+    return Error{ErrorKind::File, file + ": not all states of the sample are there"};
+}
+
+std::vector<Radians> anglesOf(const proc::SampleSet& sample) {
+    std::vector<Radians> angles;
+    for (const proc::LedTable& led : sample.leds) angles.push_back(led.incidence);
+    return angles;
+}
+
+struct Original {
+    SampleRecord record;
+    std::string bytes;
+    proc::SampleSet sample;
+};
+
+Result<Original> original(Store& store, const std::string& name) {
+    Result<SampleRecord> record = store.sample(name);
+    if (!record) return record.error();
+    Result<std::string> bytes = proc::readFile(record->file);
+    if (!bytes) return bytes.error();
+    Result<proc::SampleSet> sample = proc::decodeGonio(*bytes, record->file.string());
+    if (!sample) return sample.error();
+    return Original{std::move(*record), std::move(*bytes), std::move(*sample)};
+}
+
+Result<std::string> workedOut(const Desk& desk, const Original& before, const CalibrationSet& set) {
+    const Result<LoadedSet> loaded = loadSet(desk.store, set);
+    if (!loaded) return loaded.error();
+    const Result<References> certified = loadReferences(desk.profile);
+    if (!certified) return certified.error();
+    const Result<PlacementSignals> signals = binned(before.record.raw, loaded->lens);
+    if (!signals) return signals.error();
+    const Result<void> complete =
+        checkComplete(*signals, before.sample, before.record.raw.string());
+    if (!complete) return complete.error();
+    proc::SampleInfo info = before.sample.info;
+    info.calibrationId = set.id();
+    info.referenceCertificate = certified->white->certificate().citation;
+    return proc::encodeGonio(
+        calibrateSample(*signals,
+                        anglesOf(before.sample),
+                        {loaded->lens, loaded->white, loaded->black, *certified, desk.profile},
+                        std::move(info)));
+}
+
+}  // namespace
+
+Result<std::string> recalibrate(const Desk& desk, const JobRequest& request) {
+    const Result<Original> before = original(desk.store, request.name);
+    if (!before) return before.error();
+    const Result<CalibrationSet> set =
+        wantedSet(desk.store, before->sample.info, request.calibration);
+    if (!set) return set.error();
+    const Result<std::string> bytes = workedOut(desk, *before, *set);
+    if (!bytes) return bytes.error();
+    SampleRecord record = before->record;
+    std::string earlier;
+    const bool identical = *bytes == before->bytes;
+    if (!identical) {
+        const Result<std::string> raw = proc::readFile(record.raw);
+        if (!raw) return raw.error();
+        auto added = desk.store.addSample(record, {.file = *bytes, .raw = *raw});
+        if (!added) return added.error();
+        record = std::move(added->sample);
+        earlier = std::move(added->movedTo);
+    }
+    const Json document{{"schema", "gonio/recalibrate/1"},
+                        {"name", request.name},
+                        {"file", record.file.string()},
+                        {"calibration", set->id()},
+                        {"before", before->sample.info.calibrationId},
+                        {"identical", identical},
+                        {"earlier", earlier.empty() ? Json(nullptr) : Json(earlier)}};
+    return document.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace gonio::daemon

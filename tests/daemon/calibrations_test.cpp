@@ -1,0 +1,211 @@
+#include "daemon/calibrations.h"
+
+#include <gtest/gtest.h>
+
+#include <optional>
+
+#include "proc/formats/graw_exr.h"
+#include "tests/support/temp_folder.h"
+
+namespace gonio::daemon {
+namespace {
+
+const RigNow kNow{
+    .serial = "R1", .profileHash = "abc", .celsius = 26, .dateUtc = "2026-03-01T12:00:00Z"};
+
+CalibrationRecord white() {
+    return {.id = 12,
+            .rig = "R1",
+            .kind = "white",
+            .dateUtc = "2026-03-01T11:00:00Z",
+            .profileHash = "abc",
+            .celsius = 24};
+}
+
+std::string whyNotNow(const CalibrationRecord& calibration) {
+    return whyNot(calibration, kNow, ValidityLimits{});
+}
+
+TEST(CalibrationValidity, FreshOneOfTheRigIsGood) { EXPECT_EQ(whyNotNow(white()), ""); }
+
+TEST(CalibrationValidity, SaysWhyNotAndWhatToRun) {
+    const auto expect = [](const CalibrationRecord& bad, const std::vector<std::string>& words) {
+        const std::string why = whyNotNow(bad);
+        for (const std::string& word : words) {
+            EXPECT_NE(why.find(word), std::string::npos) << word << " in: " << why;
+        }
+    };
+    CalibrationRecord bad = white();
+    bad.rig = "R2";
+    expect(bad, {"white calibration 12", "R2", "R1"});
+    bad = white();
+    bad.profileHash = "def";
+    expect(bad, {"def", "abc", "gonio calibrate white"});
+    bad = white();
+    bad.dateUtc = "2026-02-28T11:59:59Z";
+    expect(bad, {"24.0 h old", "good for 24.0 h", "gonio calibrate white"});
+    bad.dateUtc = "yesterday";
+    expect(bad, {"no date"});
+    bad = white();
+    bad.celsius = 20.9;
+    expect(bad, {"20.9 degC", "26.0 degC", "5.0 K"});
+}
+
+TEST(CalibrationValidity, LensMapLivesLongerThanTiles) {
+    CalibrationRecord mirror = white();
+    mirror.kind = "mirror";
+    mirror.dateUtc = "2026-01-01T12:00:00Z";
+    EXPECT_EQ(whyNotNow(mirror), "");
+    mirror.dateUtc = "2025-11-01T12:00:00Z";
+    EXPECT_NE(whyNotNow(mirror), "");
+}
+
+TEST(CalibrationValidity, WhatWasNotKeptThenDoesNotCount) {
+    CalibrationRecord old = white();  // of a store before these were kept
+    old.profileHash.clear();
+    old.celsius.reset();
+    EXPECT_EQ(whyNotNow(old), "");
+}
+
+class CalibrationsInStore : public testing::Test {
+protected:
+    void SetUp() override {
+        auto opened = Store::open(folder.path());
+        ASSERT_TRUE(opened) << opened.error().message;
+        store.emplace(std::move(*opened));
+        for (const std::string rig : {"R1", "R2"}) {
+            for (const std::string kind : {"mirror", "black", "white"}) keep(rig, kind);
+        }
+        keep("R1", "white");  // 7
+        auto newest = newestSet(*store, "R1");
+        ASSERT_TRUE(newest) << newest.error().message;
+        set = std::move(*newest);
+    }
+    void keep(const std::string& rig, const std::string& kind) {
+        ASSERT_TRUE(store->addCalibration(
+            {.rig = rig, .kind = kind, .dateUtc = "t", .profileHash = "p", .celsius = 21.5},
+            {.file = rig + kind, .raw = {}}));
+    }
+    void expectRefused(const std::string& text, ErrorKind kind) {
+        const auto refused = parseSet(*store, text, set);
+        ASSERT_FALSE(refused) << text;
+        EXPECT_EQ(refused.error().kind, kind) << text;
+        EXPECT_NE(refused.error().message.find("calibration"), std::string::npos);
+    }
+    test::TempFolder folder;
+    std::optional<Store> store;
+    CalibrationSet set;
+};
+
+TEST_F(CalibrationsInStore, NewestSetIsNamedByItsNumbers) {
+    EXPECT_EQ(set.id(), "1+2+7");
+    EXPECT_EQ(set.white.profileHash, "p");
+    EXPECT_EQ(set.white.celsius, 21.5);
+    EXPECT_EQ(store->calibrations()->size(), 7U);
+    EXPECT_EQ(store->calibrations()->front().id, 7);
+}
+
+TEST_F(CalibrationsInStore, SetIsFoundByItsNameOrOneNumberInThePlaceOfItsKind) {
+    EXPECT_EQ(parseSet(*store, "1+2+3", set)->id(), "1+2+3");
+    EXPECT_EQ(parseSet(*store, "3", set)->id(), "1+2+3");
+    EXPECT_EQ(parseSet(*store, "1", set)->id(), "1+2+7");
+}
+
+TEST_F(CalibrationsInStore, WhatIsNoSetIsRefused) {
+    for (const char* bad : {"",
+                            "x",
+                            "-1",
+                            "0",
+                            "1+2+",
+                            "+",
+                            "1+2+3+7",
+                            "1+2",
+                            "3+2+1",
+                            "1.5",
+                            "99999999999999999999"}) {
+        expectRefused(bad, ErrorKind::Usage);
+    }
+    expectRefused("8", ErrorKind::Quality);
+    expectRefused("4", ErrorKind::Quality);  // of R2
+}
+
+TEST_F(CalibrationsInStore, MissingKindSaysWhatToRun) {
+    const auto none = newestSet(*store, "R3");
+    ASSERT_FALSE(none);
+    EXPECT_EQ(none.error().kind, ErrorKind::Quality);
+    EXPECT_NE(none.error().message.find("gonio calibrate mirror"), std::string::npos);
+}
+
+/// One state of uniform radiance.
+std::string uniformCapture(int led) {
+    constexpr Size kSize{700, 700};
+    proc::RawCapture capture;
+    for (const Band band : kBands) {
+        proc::RawState state;
+        state.merged = {.radiance = Image<float>(kSize, 100.F),
+                        .variance = Image<float>(kSize, 1.F),
+                        .used = Image<std::uint8_t>(kSize, 1),
+                        .saturated = Image<std::uint8_t>(kSize, 0),
+                        .window = {.x = 0, .y = 0, .size = kSize},
+                        .led = led,
+                        .band = band};
+        capture.states.push_back(std::move(state));
+    }
+    const auto bytes = proc::encodeGraw(std::move(capture));
+    EXPECT_TRUE(bytes) << bytes.error().message;
+    return bytes ? *bytes : std::string();
+}
+
+LensRecord lensWith(double pixelsPerDegree) {
+    return {.fit = {.map = proc::LensMap::fTheta({350, 350}, pixelsPerDegree),
+                    .covariance = Eigen::MatrixXd::Identity(8, 8)},
+            .spots = 20,
+            .dateUtc = "t"};
+}
+
+/// Lens, reference, and a lens map that was taken since.
+TEST(CalibrationReference, IsBinnedAgainWhereAnotherLensMapIsWanted) {
+    const test::TempFolder folder;
+    auto store = Store::open(folder.path());
+    ASSERT_TRUE(store) << store.error().message;
+    const auto keepLens = [&](const LensRecord& lens) {
+        return *store->addCalibration({.rig = "R", .kind = "mirror", .dateUtc = "t"},
+                                      {.file = encodeLens(lens), .raw = {}});
+    };
+    const LensRecord first = lensWith(4.0), second = lensWith(4.4);
+    const CalibrationRecord firstMirror = keepLens(first);
+    auto reference = [&]() -> Result<CalibrationRecord> {
+        test::TempFolder raw;
+        if (auto wrote = proc::writeGraw(raw / "r.graw", *proc::decodeGraw(uniformCapture(0), "r"));
+            !wrote) {
+            return wrote.error();
+        }
+        const auto signals = binned(raw / "r.graw", first);
+        if (!signals) return signals.error();
+        const auto bytes = encodeReference({{.name = "white"}, *signals}, {0_deg});
+        if (!bytes) return bytes.error();
+        return store->addCalibration({.rig = "R", .kind = "white", .dateUtc = "t"},
+                                     {.file = *bytes, .raw = uniformCapture(0)});
+    }();
+    ASSERT_TRUE(reference) << reference.error().message;
+    const CalibrationRecord secondMirror = keepLens(second);
+    const auto asKept = readReference(*store, *reference, firstMirror, first);
+    const auto again = readReference(*store, *reference, secondMirror, second);
+    ASSERT_TRUE(asKept && again);
+    // Radiance per solid angle goes with the square of the picture's scale.
+    constexpr std::size_t kCell = 500;
+    const double ratio = again->signals[0][0].signal[kCell] / asKept->signals[0][0].signal[kCell];
+    EXPECT_NEAR(ratio, (4.4 * 4.4) / (4.0 * 4.0), 0.01);
+}
+
+TEST(CalibrationReference, RawCaptureThatIsNoneIsNamed) {
+    const auto none = binned("/no/such.graw", lensWith(4));
+    ASSERT_FALSE(none);
+    EXPECT_NE(none.error().message.find("/no/such.graw"), std::string::npos);
+    const test::TempFolder folder;
+    ASSERT_TRUE(proc::writeGraw(folder / "r.graw", *proc::decodeGraw(uniformCapture(64), "r")));
+    EXPECT_EQ(binned(folder / "r.graw", lensWith(4)).error().kind, ErrorKind::File);
+}
+
+}  // namespace
+}  // namespace gonio::daemon
