@@ -6,14 +6,17 @@
 #include <numeric>
 
 #include "proc/plan/cover_bound.h"
+#include "proc/plan/light_bound.h"
 
 namespace gonio::proc {
 namespace {
 
-/// Labels kept after each shot in the first, narrow pass, which finds a good answer quickly.
+/// Labels kept after each shot in the passes that only look for a good answer.
 constexpr std::size_t kNarrow = 8;
-/// Sums of informations in another order differ by rounding: a need is met within this share.
-constexpr double kMet = 1 - 1e-9;
+/// And in the last: all, unless there are more than a plan may wait for.
+constexpr std::size_t kWide = 1000;
+/// Of a few sums and quotients, relative.
+constexpr double kRounding = 1e-9;
 
 /// What one label chose at one shot, and from which label before.
 struct Choice {
@@ -23,7 +26,9 @@ struct Choice {
 
 struct Label {
     Nanoseconds cost{0};
-    std::vector<double> lacking;  ///< of each need, never below 0
+    Nanoseconds least{0};      ///< of a whole answer that goes on from here
+    double effective = 0;      ///< seconds at full level, of all frames of the shots decided
+    std::vector<int> lacking;  ///< units of each need, never below 0
     Choice choice;
 };
 
@@ -34,19 +39,28 @@ bool dominates(const Label& a, const Label& b) {
     return true;
 }
 
-/// By cost; without those that an earlier one dominates; at most `width`.
-std::vector<Label> thinned(std::vector<Label> labels, std::size_t width) {
+/// Without those that another dominates, by cost; the most promising `width` of them.
+struct Thinned {
+    std::vector<Label> labels;
+    bool all = true;  ///< none was dropped for want of width
+};
+Thinned thinned(std::vector<Label> labels, std::size_t width) {
+    const auto promising = [](const Label& a, const Label& b) { return a.least < b.least; };
     std::stable_sort(labels.begin(), labels.end(), [](const Label& a, const Label& b) {
         return a.cost < b.cost;
     });
     std::vector<Label> kept;
     for (Label& label : labels) {
-        if (kept.size() == width) break;
         const bool beaten = std::any_of(
             kept.begin(), kept.end(), [&](const Label& k) { return dominates(k, label); });
         if (!beaten) kept.push_back(std::move(label));
     }
-    return kept;
+    if (kept.size() > width) {
+        std::stable_sort(kept.begin(), kept.end(), promising);
+        kept.resize(width);
+        return {.labels = std::move(kept), .all = false};
+    }
+    return {.labels = std::move(kept)};
 }
 
 class Search {
@@ -67,49 +81,77 @@ public:
         }
     }
 
-    /// The best that costs less than `limit`, of the labels within `width`.
-    std::optional<Cover> run(Nanoseconds limit, std::size_t width) {
-        Label start;
-        for (const CoverNeed& need : problem_.needs)
-            start.lacking.push_back(
-                lack(need.information, informationAtHand(problem_, need), need));
-        for (std::size_t j = 0; j < due_.size(); ++j) {
-            if (due_[j] == 0 && start.lacking[j] > 0) return std::nullopt;
-        }
+    /// The best that costs less than `limit`, of the labels within `width`. `light` may be null.
+    std::optional<Cover> run(Nanoseconds limit, std::size_t width, const LightBound* light) {
         if (!std::isfinite(prices_.seconds)) return std::nullopt;
-        std::vector<Label> labels{std::move(start)};
+        std::vector<Label> labels{start()};
+        for (std::size_t j = 0; j < due_.size(); ++j) {
+            if (due_[j] == 0 && labels.front().lacking[j] > 0) return std::nullopt;
+        }
         std::vector<std::vector<Choice>> history;
+        proven_ = true;
         for (std::size_t k = 0; k < order_.size() && !labels.empty(); ++k) {
             std::vector<Label> next;
-            for (std::size_t i = 0; i < labels.size(); ++i) extend(labels[i], i, k, limit, next);
-            labels = thinned(std::move(next), width);
+            for (std::size_t i = 0; i < labels.size(); ++i)
+                extend(labels[i], {.index = i, .shot = k, .limit = limit}, light, next);
+            Thinned thin = thinned(std::move(next), width);
+            labels = std::move(thin.labels);
+            proven_ = proven_ && thin.all;
             history.emplace_back();
             for (const Label& label : labels) history.back().push_back(label.choice);
         }
         if (labels.empty()) return std::nullopt;
-        return traced(labels.front().cost, history);
+        return traced(labels, history);
+    }
+
+    /// Whether the last run dropped only what cannot be the best.
+    [[nodiscard]] bool proven() const { return proven_; }
+    [[nodiscard]] LightBound lightBound(Nanoseconds most) const {
+        return {problem_, order_, due_, most};
     }
 
 private:
-    static double lack(double wanted, double has, const CoverNeed& need) {
-        const double left = wanted - has;
-        return left > (1 - kMet) * need.information ? left : 0;
+    /// What the frames at hand leave to be wanted.
+    [[nodiscard]] Label start() const {
+        Label label;
+        for (const CoverNeed& need : problem_.needs) {
+            int units = 0;
+            for (const CoverShot& shot : problem_.shots)
+                units += needUnits(shot.option, need, shot.have);
+            label.lacking.push_back(std::max(0, kNeedUnits - units));
+        }
+        for (const CoverShot& shot : problem_.shots) label.effective += shot.have * shot.option.tau;
+        return label;
     }
 
-    /// All numbers of frames of the k-th shot that may belong to a best answer.
+    /// Where the search is.
+    struct Place {
+        std::size_t index = 0;  ///< of the label
+        std::size_t shot = 0;   ///< in the order
+        Nanoseconds limit{0};
+    };
+    /// All numbers of frames of a shot that may belong to a best answer.
     void extend(const Label& label,
-                std::size_t index,
-                std::size_t k,
-                Nanoseconds limit,
+                const Place& at,
+                const LightBound* light,
                 std::vector<Label>& next) const {
-        const CoverShot& shot = problem_.shots[order_[k]];
-        const Span span = usefulFrames(label, k);
+        const CoverShot& shot = problem_.shots[order_[at.shot]];
+        const Span span = usefulFrames(label, at.shot);
         for (int more = span.least; more <= span.most; ++more) {
-            Label reached{.cost = label.cost + shot.cost(more),
+            const Nanoseconds cost = label.cost + shot.cost(more);
+            if (cost >= at.limit) break;
+            const double effective = label.effective + (shot.have + more) * shot.option.tau;
+            const Nanoseconds whole =
+                light == nullptr ? Nanoseconds(0) : light->from(at.shot + 1, effective);
+            if (whole >= at.limit - cost) continue;
+            Label reached{.cost = cost,
+                          .effective = effective,
                           .lacking = label.lacking,
-                          .choice = {.from = index, .more = more}};
+                          .choice = {.from = at.index, .more = more}};
             spend(reached, shot, more);
-            if (reached.cost + remaining(reached) >= limit) break;  // more frames: costs rise only
+            const Nanoseconds relaxed = remaining(reached);
+            if (relaxed >= at.limit - cost) break;  // with more frames the sum only rises
+            reached.least = cost + std::max(whole, relaxed);
             next.push_back(std::move(reached));
         }
     }
@@ -124,10 +166,11 @@ private:
         double least = 0;
         double most = 0;
         for (std::size_t j = 0; j < due_.size(); ++j) {
-            if (label.lacking[j] <= 0) continue;
-            const double rate = problem_.needs[j].rate;
-            const double has = shot.option.information(rate, shot.have);
-            const double frames = shot.option.framesFor(rate, has + label.lacking[j]);
+            if (label.lacking[j] == 0) continue;
+            const CoverNeed& need = problem_.needs[j];
+            const int units = label.lacking[j] + needUnits(shot.option, need, shot.have);
+            const double wanted = need.information * units / kNeedUnits;
+            const double frames = shot.option.framesFor(need.rate, wanted * (1 - kRounding));
             const double more = frames > 0 ? std::max(0.0, frames - shot.have) : kNever;
             most = std::max(most, more);
             if (due_[j] == k + 1) least = std::max(least, more);
@@ -140,27 +183,34 @@ private:
     void spend(Label& label, const CoverShot& shot, int more) const {
         if (more == 0) return;
         for (std::size_t j = 0; j < label.lacking.size(); ++j) {
-            if (label.lacking[j] <= 0) continue;
+            if (label.lacking[j] == 0) continue;
             const CoverNeed& need = problem_.needs[j];
-            const double gained = shot.option.information(need.rate, shot.have + more) -
-                                  shot.option.information(need.rate, shot.have);
-            label.lacking[j] = lack(label.lacking[j], gained, need);
+            const int gained = needUnits(shot.option, need, shot.have + more) -
+                               needUnits(shot.option, need, shot.have);
+            label.lacking[j] = std::max(0, label.lacking[j] - gained);
         }
     }
 
     /// What the rest costs at least.
     [[nodiscard]] Nanoseconds remaining(const Label& label) const {
         double seconds = 0;
-        for (std::size_t j = 0; j < label.lacking.size(); ++j)
-            seconds += prices_.prices[j] * label.lacking[j];
+        for (std::size_t j = 0; j < label.lacking.size(); ++j) {
+            seconds +=
+                prices_.prices[j] * problem_.needs[j].information * label.lacking[j] / kNeedUnits;
+        }
         // Rounded down, and below what rounding in the sums could add.
-        return Nanoseconds(static_cast<std::int64_t>(seconds * (1 - 1e-9) * 1e9));
+        return Nanoseconds(static_cast<std::int64_t>(seconds * (1 - kRounding) * 1e9));
     }
 
-    [[nodiscard]] Cover traced(Nanoseconds cost,
+    /// The cheapest of the labels after the last shot, followed back.
+    [[nodiscard]] Cover traced(const std::vector<Label>& last,
                                const std::vector<std::vector<Choice>>& history) const {
-        Cover cover{.more = std::vector<int>(order_.size(), 0), .cost = cost};
-        std::size_t at = 0;
+        const auto cheapest =
+            std::min_element(last.begin(), last.end(), [](const Label& a, const Label& b) {
+                return a.cost < b.cost;
+            });
+        Cover cover{.more = std::vector<int>(order_.size(), 0), .cost = cheapest->cost};
+        auto at = static_cast<std::size_t>(cheapest - last.begin());
         for (std::size_t k = history.size(); k-- > 0;) {
             const Choice& choice = history[k][at];
             cover.more[order_[k]] = choice.more;
@@ -175,16 +225,17 @@ private:
     std::vector<std::size_t> order_;  // shots by falling reach
     std::vector<std::size_t> due_;    // of each need: how many of them see its pixel
     CoverBound prices_;
+    bool proven_ = false;
 };
 
 bool met(const CoverProblem& problem, const std::vector<int>& more) {
     for (const CoverNeed& need : problem.needs) {
-        double sum = 0;
+        int units = 0;
         for (std::size_t g = 0; g < more.size(); ++g) {
             const CoverShot& shot = problem.shots[g];
-            sum += shot.option.information(need.rate, shot.have + more[g]);
+            units += needUnits(shot.option, need, shot.have + more[g]);
         }
-        if (sum < need.information * kMet) return false;
+        if (units < kNeedUnits) return false;
     }
     return true;
 }
@@ -214,10 +265,19 @@ std::optional<Cover> cheapestCover(const CoverProblem& problem, Nanoseconds limi
                              .needs = essentialNeeds(problem.shots, problem.needs),
                              .maxFrames = problem.maxFrames};
     Search search(small);
-    const std::optional<Cover> first = search.run(limit, kNarrow);
-    const std::size_t all = std::numeric_limits<std::size_t>::max();
-    std::optional<Cover> best = search.run(first ? first->cost : limit, all);
-    return best ? best : first;
+    std::optional<Cover> best = search.run(limit, kNarrow, nullptr);
+    const auto most = [&] { return best ? best->cost : limit; };
+    std::optional<LightBound> light;
+    if (most() < Nanoseconds::max()) light = search.lightBound(most());
+    std::optional<Cover> better = search.run(most(), kWide, light ? &*light : nullptr);
+    if (better) best = std::move(better);
+    if (best) best->proven = search.proven();
+    return best;
+}
+
+int needUnits(const ShotOption& shot, const CoverNeed& need, int frames) {
+    const double share = shot.information(need.rate, frames) / need.information;
+    return static_cast<int>(std::min(1.0, share * (1 + kRounding)) * kNeedUnits);
 }
 
 std::optional<Cover> cheapestCoverReference(const CoverProblem& problem) {

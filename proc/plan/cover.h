@@ -11,6 +11,10 @@
 // frame cannot bring more than its time's worth at these prices. Both keep the optimum, so a
 // stricter need never makes the answer cheaper.
 //
+// What a shot's frames tell is counted in 128ths of what the need wants, rounded down: less than 1
+// % of an uncertainty is given away, and far fewer labels differ. A stricter need counts no more of
+// the same frames, so this too keeps the order of the answers.
+//
 // Without needs, or where the pilots meet them: no frames. A need that no number of frames up to
 // maxFrames can meet: no answer.
 
@@ -46,6 +50,9 @@ struct CoverProblem {
 struct Cover {
     std::vector<int> more;  ///< frames of each shot, in the order of the problem's
     Nanoseconds cost{0};
+    /// That it is the cheapest. Where more than 1000 labels stay open after one shot, the search
+    /// goes on with the most promising ones, and what it finds is only as good as that.
+    bool proven = true;
 };
 
 /// Nothing when there is no answer that costs less than `limit`.
@@ -54,6 +61,10 @@ struct Cover {
 
 /// The slow, obvious twin: tries every combination of up to maxFrames frames.
 [[nodiscard]] std::optional<Cover> cheapestCoverReference(const CoverProblem& problem);
+
+/// What n frames in all tell a need, in 128ths of what it wants, rounded down; at most 128.
+inline constexpr int kNeedUnits = 128;
+[[nodiscard]] int needUnits(const ShotOption& shot, const CoverNeed& need, int frames);
 
 /// The needs without those that others imply, for these shots and any subset of them.
 [[nodiscard]] std::vector<CoverNeed> essentialNeeds(const std::vector<CoverShot>& shots,

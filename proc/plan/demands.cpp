@@ -4,6 +4,11 @@
 #include <cmath>
 
 namespace gonio::proc {
+namespace {
+
+constexpr double kWithinReach = 1 - 1e-6;  // so that rounding does not put it out of reach
+
+}  // namespace
 
 Means Means::of(std::vector<ShotOption> options, int maxFrames) {
     Means means{.options = std::move(options), .maxFrames = maxFrames};
@@ -16,7 +21,7 @@ double Means::mostInformation(double rate) const {
     double most = 0;
     for (const ShotOption& option : options)
         most = std::max(most, option.information(rate, maxFrames));
-    return most;
+    return most * kWithinReach;
 }
 
 CellDemand demandOf(const PlanCell& cell,

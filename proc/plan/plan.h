@@ -89,6 +89,7 @@ struct Plan {
     std::vector<DarkCapture> darks;  ///< after the pilots; the pilots' exposures first
     std::vector<StatePlan> states;   ///< in the order of the pilots
     int darkFrames = 0;              ///< that each mean dark frame is made of
+    bool proven = true;              ///< that no plan is cheaper (cover.h)
     TimeParts seconds;
     Prediction predicted;
     CellCounts counts;

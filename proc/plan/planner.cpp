@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "proc/core/number_text.h"
+#include "proc/core/parallel.h"
 #include "proc/plan/cover_bound.h"
 #include "proc/plan/prediction.h"
 #include "proc/plan/shared_choice.h"
@@ -35,6 +36,7 @@ public:
         const SharedChoice choice = choiceFor(demands);
         Plan plan{.goal = goal_, .wanted = wanted, .pilots = pilots_};
         plan.darkFrames = choice.darkFrames;
+        plan.proven = choice.proven;
         for (const Seconds exposure : choice.darks)
             plan.darks.push_back({.exposure = exposure, .frames = choice.darkFrames});
         for (std::size_t s = 0; s < demands.size(); ++s)
@@ -91,13 +93,16 @@ private:
     }
 
     [[nodiscard]] std::vector<StateDemands> demandsFor(double wanted) const {
-        std::vector<StateDemands> demands;
-        for (const StatePilot& state : input_.states) {
-            demands.push_back(demandsOf(
-                state, [&](const PlanCell& cell) { return demand(cell, wanted); }, means_));
-            std::vector<CoverNeed>& needs = demands.back().needs;
-            needs = essentialNeeds(shotsOf(), std::move(needs));
-        }
+        std::vector<StateDemands> demands(input_.states.size());
+        parallelFor(demands.size(), [&](IndexRange range) {
+            for (std::size_t s = range.begin; s < range.end; ++s) {
+                demands[s] = demandsOf(
+                    input_.states[s],
+                    [&](const PlanCell& cell) { return demand(cell, wanted); },
+                    means_);
+                demands[s].needs = essentialNeeds(shotsOf(), std::move(demands[s].needs));
+            }
+        });
         return demands;
     }
 
@@ -195,6 +200,7 @@ private:
              "are too dim for " + std::to_string(input_.rig.maxFrames) +
                  " frames of any shot to reach the goal");
         note(plan.counts.noSignal, "have no light of their own");
+        if (!plan.proven) notes.emplace_back("the plan is good, but not proven to be the cheapest");
         note(plan.counts.ignored, "without a pilot value are left out");
         return notes;
     }

@@ -1,12 +1,10 @@
 #include "proc/plan/shared_choice.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numeric>
+#include <limits>
 #include <utility>
 
 #include "proc/core/parallel.h"
-#include "proc/plan/cover_bound.h"
 
 namespace gonio::proc {
 namespace {
@@ -18,9 +16,30 @@ bool contains(const std::vector<Seconds>& list, Seconds exposure) {
 /// One set of exposures with one number of dark frames.
 struct Candidate {
     int darkFrames = 1;
+    std::size_t set = 0;             ///< bit i: the i-th exposure that no pilot has
     std::vector<Seconds> exposures;  ///< the pilots' first
     Nanoseconds darkCost{0};         ///< waiting for the plan included
-    Nanoseconds least{0};            ///< of the run, by the bounds of the states
+
+    /// Whatever the other can do, this can do at least as well.
+    [[nodiscard]] bool covers(const Candidate& other) const {
+        return darkFrames >= other.darkFrames && (set & other.set) == other.set;
+    }
+};
+
+/// What the states of a candidate cost at least.
+struct Known {
+    Candidate candidate;
+    std::vector<Nanoseconds> least;
+
+    [[nodiscard]] Nanoseconds together() const {
+        Nanoseconds sum = candidate.darkCost;
+        for (const Nanoseconds cost : least) {
+            if (cost == kNever) return kNever;
+            sum += cost;
+        }
+        return sum;
+    }
+    static constexpr Nanoseconds kNever = Nanoseconds::max();
 };
 
 class Chooser {
@@ -32,39 +51,61 @@ public:
         }
     }
 
+    /// Always goes on with the candidate that could be the cheapest by all that is known.
     std::optional<SharedChoice> best() {
-        std::vector<Candidate> candidates = all();
-        for (Candidate& candidate : candidates) candidate.least = bound(candidate);
-        std::stable_sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) {
-            return a.least < b.least;
-        });
+        std::vector<Known> open;
+        for (Candidate& candidate : all()) {
+            std::vector<Nanoseconds> nothing(problem_.needs.size(), Nanoseconds(0));
+            open.push_back({.candidate = std::move(candidate), .least = std::move(nothing)});
+        }
         std::optional<SharedChoice> best;
-        for (const Candidate& candidate : candidates) {
-            const Nanoseconds limit = best ? best->cost : Nanoseconds::max();
-            if (candidate.least >= limit) break;
-            if (std::optional<SharedChoice> better = solve(candidate, limit))
-                best = std::move(better);
+        while (!open.empty()) {
+            const auto next = promising(open);
+            const Nanoseconds limit = best ? best->cost : Known::kNever;
+            if (next->together() >= limit) {
+                open.erase(next);
+                continue;
+            }
+            Known known = std::move(*next);
+            open.erase(next);
+            if (std::optional<SharedChoice> better = solve(known, limit)) best = std::move(better);
+            for (Known& other : open) learn(known, other);
         }
         return best;
     }
 
 private:
+    /// First those with all exposures: they bound the others.
+    [[nodiscard]] std::vector<Known>::iterator promising(std::vector<Known>& open) const {
+        const std::size_t whole = (std::size_t{1} << others_.size()) - 1;
+        const auto rank = [&](const Known& known) {
+            return std::pair(known.candidate.set == whole ? Nanoseconds(0) : Nanoseconds(1),
+                             known.together());
+        };
+        return std::min_element(open.begin(), open.end(), [&](const Known& a, const Known& b) {
+            return rank(a) < rank(b);
+        });
+    }
+
+    static void learn(const Known& from, Known& about) {
+        if (!from.candidate.covers(about.candidate)) return;
+        for (std::size_t s = 0; s < about.least.size(); ++s)
+            about.least[s] = std::max(about.least[s], from.least[s]);
+    }
+
     [[nodiscard]] std::vector<Candidate> all() const {
+        const std::size_t sets = std::size_t{1} << others_.size();
+        if (problem_.rig.darkFramesHeld > 0)
+            return {candidate(problem_.rig.darkFramesHeld, sets - 1)};
         std::vector<Candidate> candidates;
-        const int held = problem_.rig.darkFramesHeld;
-        if (held > 0) {
-            candidates.push_back(candidate(held, (std::size_t{1} << others_.size()) - 1));
-            return candidates;
-        }
         for (const int frames : kDarkChoices) {
-            for (std::size_t set = 0; set < std::size_t{1} << others_.size(); ++set)
-                candidates.push_back(candidate(frames, set));
+            for (std::size_t set = sets; set-- > 0;) candidates.push_back(candidate(frames, set));
         }
         return candidates;
     }
 
     [[nodiscard]] Candidate candidate(int frames, std::size_t set) const {
-        Candidate made{.darkFrames = frames, .exposures = pilots_};
+        Candidate made{.darkFrames = frames, .set = set, .exposures = pilots_};
         for (std::size_t i = 0; i < others_.size(); ++i) {
             if ((set >> i & 1U) != 0) made.exposures.push_back(others_[i]);
         }
@@ -92,47 +133,29 @@ private:
         return cover;
     }
 
-    /// What each state costs at least.
-    [[nodiscard]] std::vector<double> bounds(const Candidate& candidate) const {
-        std::vector<double> seconds(problem_.needs.size());
-        parallelFor(seconds.size(), [&](IndexRange range) {
-            for (std::size_t s = range.begin; s < range.end; ++s)
-                seconds[s] = coverBound(coverOf(candidate, s)).seconds;
-        });
-        return seconds;
-    }
-
-    [[nodiscard]] Nanoseconds bound(const Candidate& candidate) const {
-        const std::vector<double> seconds = bounds(candidate);
-        return added(candidate.darkCost, std::accumulate(seconds.begin(), seconds.end(), 0.0));
-    }
-
-    static Nanoseconds added(Nanoseconds cost, double seconds) {
-        if (!std::isfinite(seconds)) return Nanoseconds::max();
-        return cost + Nanoseconds(static_cast<std::int64_t>(seconds * (1 - 1e-9) * 1e9));
-    }
-
-    [[nodiscard]] std::optional<SharedChoice> solve(const Candidate& candidate,
-                                                    Nanoseconds limit) const {
-        const std::vector<double> least = bounds(candidate);
-        const double together = std::accumulate(least.begin(), least.end(), 0.0);
+    /// Solves all states, and notes what they cost (or at least cost) in `known`.
+    [[nodiscard]] std::optional<SharedChoice> solve(Known& known, Nanoseconds limit) const {
+        const Candidate& candidate = known.candidate;
+        const Nanoseconds together = known.together();
         SharedChoice choice{.darkFrames = candidate.darkFrames,
                             .darks = candidate.exposures,
                             .options = shotOptions(problem_.rig, candidate.darkFrames)};
         if (problem_.rig.darkFramesHeld > 0) choice.darks.clear();
-        std::vector<std::optional<Cover>> covers(least.size());
+        std::vector<std::optional<Cover>> covers(known.least.size());
         parallelFor(covers.size(), [&](IndexRange range) {
             for (std::size_t s = range.begin; s < range.end; ++s) {
-                const Nanoseconds others = added(candidate.darkCost, together - least[s]);
-                const Nanoseconds left = limit == Nanoseconds::max() ? limit : limit - others;
+                const Nanoseconds left =
+                    limit == Known::kNever ? limit : limit - (together - known.least[s]);
                 covers[s] = cheapestCover(coverOf(candidate, s), left);
+                known.least[s] = covers[s] ? covers[s]->cost : left;
             }
         });
         choice.cost = candidate.darkCost;
-        for (std::size_t s = 0; s < covers.size(); ++s) {
-            if (!covers[s]) return std::nullopt;
-            choice.cost += covers[s]->cost;
-            choice.more.push_back(spread(*covers[s], candidate, choice.options));
+        for (const std::optional<Cover>& cover : covers) {
+            if (!cover) return std::nullopt;
+            choice.cost += cover->cost;
+            choice.proven = choice.proven && cover->proven;
+            choice.more.push_back(spread(*cover, candidate, choice.options));
         }
         if (choice.cost >= limit) return std::nullopt;
         const CoverProblem everything = coverOf(problem_.rig.exposures);
@@ -165,11 +188,17 @@ private:
 }  // namespace
 
 std::vector<ShotOption> shotOptions(const RigModel& rig, int darkFrames) {
+    const std::vector<ShotKind> pilots = rig.pilotShots();
     std::vector<ShotOption> options;
+    double brighter = std::numeric_limits<double>::infinity();  // effective time, of a level above
     for (const double level : rig.levels) {
-        for (const Seconds exposure : rig.exposures)
-            options.push_back(
-                shotOption(rig.sensor, {.level = level, .exposure = exposure}, darkFrames));
+        for (const Seconds exposure : rig.exposures) {
+            const ShotKind kind{.level = level, .exposure = exposure};
+            const bool piloted = std::find(pilots.begin(), pilots.end(), kind) != pilots.end();
+            if (piloted || exposure.count() * level < brighter)
+                options.push_back(shotOption(rig.sensor, kind, darkFrames));
+        }
+        brighter = rig.exposures.front().count() * level;
     }
     return options;
 }

@@ -15,7 +15,8 @@ namespace gonio::proc {
 /// Numbers of frames that a mean dark frame may be made of.
 inline constexpr int kDarkChoices[] = {1, 2, 4, 8, 16};
 
-/// Every level with every exposure, levels first.
+/// Levels with exposures, levels first. A dimmed LED is there for what saturates the shortest
+/// exposure at the level above: longer effective times are left to that level, in less time.
 [[nodiscard]] std::vector<ShotOption> shotOptions(const RigModel& rig, int darkFrames);
 
 struct SharedChoice {
@@ -25,6 +26,7 @@ struct SharedChoice {
     std::vector<int> have;               ///< pilot frames of each option
     std::vector<std::vector<int>> more;  ///< of each state, of each option
     Nanoseconds cost{0};                 ///< all that depends on the choice
+    bool proven = true;                  ///< as of the covers
 };
 
 struct SharedProblem {

@@ -94,8 +94,11 @@ std::vector<StatePilot> tradeStates(const TradeMaterial& material, const PhotonB
 
 RigModel tradeRig(const RigTiming& timing, const std::vector<double>& levels) {
     RigModel rig{.timing = timing, .levels = levels};
-    for (const double us : {20.0, 80.0, 320.0, 1280.0, 5120.0, 40e3, 200e3, 1e6})
+    for (const double us : {20.0, 80.0, 320.0, 1280.0, 5120.0, 40e3})
         rig.exposures.emplace_back(us * 1e-6);
+    if (levels.size() < kLevels.size()) {
+        for (const double us : {200e3, 1e6}) rig.exposures.emplace_back(us * 1e-6);
+    }
     return rig;
 }
 

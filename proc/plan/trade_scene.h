@@ -54,8 +54,8 @@ struct LevelChoice {
 [[nodiscard]] std::vector<StatePilot> tradeStates(const TradeMaterial& material,
                                                   const PhotonBudget& budget);
 
-/// The rigs of config/rigs with LED levels of this many. The ladder of exposures is theirs, and
-/// goes on to a second: without dimming, the light of a dim cell needs it.
+/// A rig as of config/rigs with these LED levels. The ladder of exposures is theirs; with fewer
+/// than three levels, whose light is less, it goes on to a second.
 [[nodiscard]] RigModel tradeRig(const RigTiming& timing, const std::vector<double>& levels);
 
 }  // namespace gonio::proc
