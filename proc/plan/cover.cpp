@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "proc/plan/cover_bound.h"
 #include "proc/plan/light_bound.h"
@@ -225,7 +226,7 @@ private:
     std::vector<std::size_t> order_;  // shots by falling reach
     std::vector<std::size_t> due_;    // of each need: how many of them see its pixel
     CoverBound prices_;
-    bool proven_ = false;
+    bool proven_ = true;
 };
 
 bool met(const CoverProblem& problem, const std::vector<int>& more) {
@@ -260,7 +261,7 @@ std::size_t seenBy(const std::vector<CoverShot>& shots, double rate) {
 
 }  // namespace
 
-std::optional<Cover> cheapestCover(const CoverProblem& problem, Nanoseconds limit) {
+CoverAnswer cheapestCover(const CoverProblem& problem, Nanoseconds limit) {
     const CoverProblem small{.shots = problem.shots,
                              .needs = essentialNeeds(problem.shots, problem.needs),
                              .maxFrames = problem.maxFrames};
@@ -271,8 +272,7 @@ std::optional<Cover> cheapestCover(const CoverProblem& problem, Nanoseconds limi
     if (most() < Nanoseconds::max()) light = search.lightBound(most());
     std::optional<Cover> better = search.run(most(), kWide, light ? &*light : nullptr);
     if (better) best = std::move(better);
-    if (best) best->proven = search.proven();
-    return best;
+    return {.cover = std::move(best), .proven = search.proven()};
 }
 
 int needUnits(const ShotOption& shot, const CoverNeed& need, int frames) {

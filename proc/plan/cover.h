@@ -50,14 +50,17 @@ struct CoverProblem {
 struct Cover {
     std::vector<int> more;  ///< frames of each shot, in the order of the problem's
     Nanoseconds cost{0};
-    /// That it is the cheapest. Where more than 1000 labels stay open after one shot, the search
+};
+
+/// What the search came to.
+struct CoverAnswer {
+    std::optional<Cover> cover;  ///< nothing: none costs less than the limit
+    /// That this is the last word. Where more than 1000 labels stay open after one shot, the search
     /// goes on with the most promising ones, and what it finds is only as good as that.
     bool proven = true;
 };
-
-/// Nothing when there is no answer that costs less than `limit`.
-[[nodiscard]] std::optional<Cover> cheapestCover(const CoverProblem& problem,
-                                                 Nanoseconds limit = Nanoseconds::max());
+[[nodiscard]] CoverAnswer cheapestCover(const CoverProblem& problem,
+                                        Nanoseconds limit = Nanoseconds::max());
 
 /// The slow, obvious twin: tries every combination of up to maxFrames frames.
 [[nodiscard]] std::optional<Cover> cheapestCoverReference(const CoverProblem& problem);

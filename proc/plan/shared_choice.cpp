@@ -71,6 +71,7 @@ public:
             if (std::optional<SharedChoice> better = solve(known, limit)) best = std::move(better);
             for (Known& other : open) learn(known, other);
         }
+        if (best) best->proven = proven_;
         return best;
     }
 
@@ -134,27 +135,29 @@ private:
     }
 
     /// Solves all states, and notes what they cost (or at least cost) in `known`.
-    [[nodiscard]] std::optional<SharedChoice> solve(Known& known, Nanoseconds limit) const {
+    [[nodiscard]] std::optional<SharedChoice> solve(Known& known, Nanoseconds limit) {
         const Candidate& candidate = known.candidate;
         const Nanoseconds together = known.together();
         SharedChoice choice{.darkFrames = candidate.darkFrames,
                             .darks = candidate.exposures,
                             .options = shotOptions(problem_.rig, candidate.darkFrames)};
         if (problem_.rig.darkFramesHeld > 0) choice.darks.clear();
-        std::vector<std::optional<Cover>> covers(known.least.size());
+        std::vector<CoverAnswer> covers(known.least.size());
         parallelFor(covers.size(), [&](IndexRange range) {
             for (std::size_t s = range.begin; s < range.end; ++s) {
                 const Nanoseconds left =
                     limit == Known::kNever ? limit : limit - (together - known.least[s]);
                 covers[s] = cheapestCover(coverOf(candidate, s), left);
-                known.least[s] = covers[s] ? covers[s]->cost : left;
+                if (!covers[s].proven) continue;  // it may cost less
+                known.least[s] = covers[s].cover ? covers[s].cover->cost : left;
             }
         });
         choice.cost = candidate.darkCost;
-        for (const std::optional<Cover>& cover : covers) {
+        for (const CoverAnswer& answer : covers) proven_ = proven_ && answer.proven;
+        for (const CoverAnswer& answer : covers) {
+            const std::optional<Cover>& cover = answer.cover;
             if (!cover) return std::nullopt;
             choice.cost += cover->cost;
-            choice.proven = choice.proven && cover->proven;
             choice.more.push_back(spread(*cover, candidate, choice.options));
         }
         if (choice.cost >= limit) return std::nullopt;
@@ -183,6 +186,7 @@ private:
     const SharedProblem& problem_;
     ShotCost cost_;
     std::vector<Seconds> pilots_, others_;
+    bool proven_ = true;
 };
 
 }  // namespace

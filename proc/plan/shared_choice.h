@@ -26,7 +26,7 @@ struct SharedChoice {
     std::vector<int> have;               ///< pilot frames of each option
     std::vector<std::vector<int>> more;  ///< of each state, of each option
     Nanoseconds cost{0};                 ///< all that depends on the choice
-    bool proven = true;                  ///< as of the covers
+    bool proven = true;                  ///< that no choice is cheaper (cover.h)
 };
 
 struct SharedProblem {
