@@ -12,8 +12,10 @@
 namespace gonio::proc {
 namespace {
 
-/// Labels kept after each shot in the passes that only look for a good answer.
+/// Labels kept after each shot in the pass that only looks for a good answer.
 constexpr std::size_t kNarrow = 8;
+/// Frames beyond the least that such a pass tries of a shot.
+constexpr int kFewMore = 15;
 /// And in the last: all, unless there are more than a plan may wait for.
 constexpr std::size_t kWide = 1000;
 /// Of a few sums and quotients, relative.
@@ -138,7 +140,9 @@ private:
                 std::vector<Label>& next) const {
         const CoverShot& shot = problem_.shots[order_[at.shot]];
         const Span span = usefulFrames(label, at.shot);
-        for (int more = span.least; more <= span.most; ++more) {
+        // Without a bound a narrow pass would try up to maxFrames of everything.
+        const int most = light == nullptr ? std::min(span.most, span.least + kFewMore) : span.most;
+        for (int more = span.least; more <= most; ++more) {
             const Nanoseconds cost = label.cost + shot.cost(more);
             if (cost >= at.limit) break;
             const double effective = label.effective + (shot.have + more) * shot.option.tau;
@@ -253,6 +257,13 @@ bool countUp(std::vector<int>& digits, int maxFrames) {
     return false;
 }
 
+/// More than maxFrames of every shot cost.
+Nanoseconds everything(const CoverProblem& problem) {
+    Nanoseconds sum(1);
+    for (const CoverShot& shot : problem.shots) sum += shot.cost(problem.maxFrames);
+    return sum;
+}
+
 /// How many of the shots see a pixel of this rate.
 std::size_t seenBy(const std::vector<CoverShot>& shots, double rate) {
     return static_cast<std::size_t>(std::count_if(
@@ -270,7 +281,8 @@ CoverAnswer cheapestCover(const CoverProblem& problem, Nanoseconds limit) {
     const auto most = [&] { return best ? best->cost : limit; };
     std::optional<LightBound> light;
     if (most() < Nanoseconds::max()) light = search.lightBound(most());
-    std::optional<Cover> better = search.run(most(), kWide, light ? &*light : nullptr);
+    if (!light) light = search.lightBound(everything(problem));
+    std::optional<Cover> better = search.run(most(), kWide, &*light);
     if (better) best = std::move(better);
     return {.cover = std::move(best), .proven = search.proven()};
 }

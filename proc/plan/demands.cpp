@@ -2,11 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace gonio::proc {
 namespace {
 
 constexpr double kWithinReach = 1 - 1e-6;  // so that rounding does not put it out of reach
+
+constexpr double kBin = 0.03;       // of the logarithm of a rate
+constexpr double kDarkest = 1e-12;  // electrons per second
 
 }  // namespace
 
@@ -40,6 +44,22 @@ CellDemand demandOf(const PlanCell& cell,
     return {.kind = Kind::Planned,
             .relative = std::max(wanted, worthwhile),
             .heldAtTheFloor = worthwhile > wanted};
+}
+
+std::vector<CoverNeed> binnedNeeds(const std::vector<CoverNeed>& needs, const Means& means) {
+    std::map<double, CoverNeed> bins;
+    for (const CoverNeed& need : needs) {
+        CoverNeed& bin = bins[std::floor(std::log(std::max(need.rate, kDarkest)) / kBin)];
+        bin.rate = std::max(bin.rate, need.rate);
+        bin.information = std::max(bin.information, need.information);
+    }
+    std::vector<CoverNeed> binned;
+    for (const auto& [place, need] : bins) {
+        binned.push_back(
+            {.rate = need.rate,
+             .information = std::min(need.information, means.mostInformation(need.rate))});
+    }
+    return binned;
 }
 
 StateDemands demandsOf(const StatePilot& state,

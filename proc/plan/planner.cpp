@@ -100,7 +100,7 @@ private:
                     input_.states[s],
                     [&](const PlanCell& cell) { return demand(cell, wanted); },
                     means_);
-                demands[s].needs = essentialNeeds(shotsOf(), std::move(demands[s].needs));
+                demands[s].needs = essentialNeeds(shotsOf(), binnedNeeds(demands[s].needs, means_));
             }
         });
         return demands;

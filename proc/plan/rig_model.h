@@ -44,7 +44,7 @@ struct RigTiming {
     Seconds handover{0.003};     ///< h
     Seconds ledSettle{0.005};    ///< s
     Seconds transfer{0.0394};    ///< of one picture, at most P
-    Seconds planning{0.100};     ///< of the host, from the last pilot frame to the first command
+    Seconds planning{0.100};     ///< of the host: the last state's pilots merged, and the plan made
 
     /// A 1024 x 1024 picture of 12 bit, 25 a second.
     [[nodiscard]] static RigTiming usb2();

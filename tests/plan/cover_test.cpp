@@ -62,4 +62,58 @@ TEST(Cover, MatchesReference) {
     EXPECT_GT(answered, 50);
 }
 
+TEST(Cover, BoundIsNoMoreThanTheAnswer) {
+    constexpr std::uint64_t kSeed = 7;
+    Draw draw{std::mt19937_64(kSeed)};
+    for (int trial = 0; trial < 200; ++trial) {
+        SCOPED_TRACE("seed " + std::to_string(kSeed) + ", trial " + std::to_string(trial));
+        const CoverProblem problem = randomProblem(draw, 6, 8, 40);
+        const CoverBound bound = coverBound(problem);
+        const CoverAnswer answer = cheapestCover(problem);
+        if (!answer.cover) continue;
+        EXPECT_LE(bound.seconds, Seconds(answer.cover->cost).count() + 1e-9);
+        for (const double price : bound.prices) EXPECT_GE(price, 0);
+    }
+}
+
+TEST(Cover, EssentialNeedsImplyTheRest) {
+    constexpr std::uint64_t kSeed = 8;
+    Draw draw{std::mt19937_64(kSeed)};
+    for (int trial = 0; trial < 100; ++trial) {
+        SCOPED_TRACE("seed " + std::to_string(kSeed) + ", trial " + std::to_string(trial));
+        CoverProblem problem = randomProblem(draw, 3, 12, 5);
+        const auto all = cheapestCoverReference(problem);
+        problem.needs = essentialNeeds(problem.shots, problem.needs);
+        EXPECT_LT(problem.needs.size(), 12U);
+        const auto essential = cheapestCoverReference(problem);
+        ASSERT_EQ(all.has_value(), essential.has_value());
+        if (!all) continue;
+        EXPECT_EQ(all->cost, essential->cost);
+    }
+}
+
+TEST(Cover, LimitExcludesWhatCostsAsMuch) {
+    constexpr std::uint64_t kSeed = 9;
+    Draw draw{std::mt19937_64(kSeed)};
+    int tried = 0;
+    for (int trial = 0; trial < 50; ++trial) {
+        const CoverProblem problem = randomProblem(draw, 4, 5, 20);
+        const CoverAnswer answer = cheapestCover(problem);
+        if (!answer.cover || answer.cover->cost == Nanoseconds(0)) continue;
+        ++tried;
+        EXPECT_FALSE(cheapestCover(problem, answer.cover->cost).cover) << kSeed << " " << trial;
+        const auto again = cheapestCover(problem, answer.cover->cost + Nanoseconds(1));
+        ASSERT_TRUE(again.cover) << kSeed << " " << trial;
+        EXPECT_EQ(again.cover->cost, answer.cover->cost);
+    }
+    EXPECT_GT(tried, 10);
+}
+
+TEST(Cover, WithoutNeedsThereAreNoFrames) {
+    Draw draw{std::mt19937_64(1)};
+    const CoverAnswer answer = cheapestCover(randomProblem(draw, 4, 0, 4));
+    ASSERT_TRUE(answer.cover);
+    EXPECT_EQ(answer.cover->cost, Nanoseconds(0));
+}
+
 }  // namespace

@@ -26,7 +26,7 @@ TEST(Planner, StricterGoalNeverGetsACheaperPlan) {
     for (int levels : {1, 2, 3}) {
         const SmallScene scene = smallScene(3, levels);
         Seconds before{0};
-        for (double w = 0.3; w > 0.004; w /= 1.3) {
+        for (double w = 0.3; w > 0.007; w /= 1.5) {
             const Result<Plan> plan = planCaptures(scene.input(), wanted(w));
             ASSERT_TRUE(plan);
             ASSERT_TRUE(plan->proven);
