@@ -92,7 +92,8 @@ double SensorModel::usableElectrons() const {
 RigTiming RigTiming::usb2() { return {}; }
 
 RigTiming RigTiming::usb3() {
-    return {.framePeriod = Seconds(1.0 / 60), .transfer = Seconds(0.004)};
+    return {
+        .framePeriod = Seconds(1.0 / 60), .handover = Seconds(0.0015), .transfer = Seconds(0.004)};
 }
 
 Result<void> RigModel::check() const {

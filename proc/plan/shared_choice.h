@@ -13,7 +13,7 @@
 namespace gonio::proc {
 
 /// Numbers of frames that a mean dark frame may be made of.
-inline constexpr int kDarkChoices[] = {1, 2, 4, 8, 16};
+inline constexpr int kDarkChoices[] = {1, 2, 4, 8, 16, 32, 64};
 
 /// Levels with exposures, levels first. A dimmed LED is there for what saturates the shortest
 /// exposure at the level above: longer effective times are left to that level, in less time.
