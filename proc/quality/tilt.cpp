@@ -1,0 +1,296 @@
+#include "proc/quality/tilt.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include "proc/models/ggx.h"
+#include "proc/optics/cell_grid.h"
+#include "proc/solve/least_squares.h"
+
+namespace gonio::proc {
+namespace {
+
+// Of an LED's cells: those whose f is at least this share of the brightest are its lobe, and some
+// others hold the floor; of either at most so many, evenly.
+constexpr double kLobeShare = 0.4;
+constexpr std::size_t kMostLobeCells = 800, kMostFloorCells = 200;
+constexpr Radians kOutermost = 72_deg;  // beyond, cells are cut and f is steep
+// A fitted lobe is not the real one: by about so much of f.
+constexpr double kModelError = 0.02;
+constexpr double kWorstUncertainty = 0.02;  // rad: beyond it nothing is known of the normal
+constexpr double kSteepest = 0.25;          // tan of the largest tilt that is looked for
+constexpr int kMostIterations = 50;
+// There is a lobe where it explains so much of chi-square.
+constexpr double kLobeChiSquare = 50, kLobeGain = 1.05;
+
+/// One measured cell, the bands' mean.
+struct Sighting {
+    Direction wi, wo;
+    double f = 0, u = 0;
+    /// How far a fitted f may be off.
+    [[nodiscard]] double sigma() const {
+        return std::max(std::hypot(u, kModelError * f), std::numeric_limits<double>::min());
+    }
+};
+
+Eigen::Matrix3d toSurface(const Direction& normal) {
+    return Eigen::Quaterniond::FromTwoVectors(normal.vector(), Eigen::Vector3d::UnitZ())
+        .toRotationMatrix();
+}
+
+/// f of a floor and a lobe of strength 1, in the surface's frame and as the rig sees them.
+struct Parts {
+    double floor = 0, lobe = 0;
+};
+
+struct Shape {
+    double alpha = 0.1, f0 = 0.04;
+};
+
+Parts partsOf(const Shape& shape, const Eigen::Matrix3d& turn, const LightView& pair) {
+    const Eigen::Vector3d wi = turn * pair.in.vector(), wo = turn * pair.out.vector();
+    if (wi.z() <= 0 || wo.z() <= 0) return {};
+    const GgxAlpha alpha{shape.alpha, shape.alpha};
+    const LightView own{*Direction::fromVector(wi), *Direction::fromVector(wo)};
+    const Eigen::Vector3d half = wi + wo;
+    const double cosine = std::clamp(wi.dot(half) / half.norm(), 0.0, 1.0);
+    const double view = wo.z() / pair.out.z();
+    return {view / kPi,
+            view * ggxD(half, alpha) * ggxV(own, alpha, Masking::HeightCorrelated) *
+                schlick(LedBands::all(shape.f0), cosine)[Band::G]};
+}
+
+std::optional<Sighting> sightingAt(const LedTable& led, std::size_t cell) {
+    Sighting one{.wi = Direction::fromSpherical(led.incidence, Radians(0)),
+                 .wo = CellGrid::centre(cell)};
+    if (one.wo.theta() > kOutermost) return std::nullopt;
+    for (const CellSamples& band : led.bands) {
+        if (band.size() == 0 || !band.present(cell)) return std::nullopt;
+        one.f += band.f[cell] / static_cast<double>(kBands.size());
+        one.u = std::hypot(one.u, band.uRandom[cell] / static_cast<double>(kBands.size()));
+    }
+    return one;
+}
+
+/// At most `most` of them, evenly.
+void thin(std::vector<Sighting>& sightings, std::size_t most) {
+    const std::size_t stride = (sightings.size() + most - 1) / most;
+    if (stride < 2) return;
+    for (std::size_t i = 0; i * stride < sightings.size(); ++i) {
+        sightings[i] = sightings[i * stride];
+    }
+    sightings.resize((sightings.size() + stride - 1) / stride);
+}
+
+using Sightings = std::vector<Sighting>;
+
+Sightings sightingsOf(const LedTable& led) {
+    Sightings all;
+    double brightest = 0;
+    for (std::size_t cell = 0; cell < CellGrid::count(); ++cell) {
+        const auto one = sightingAt(led, cell);
+        if (!one) continue;
+        all.push_back(*one);
+        brightest = std::max(brightest, one->f);
+    }
+    const auto floor = std::stable_partition(all.begin(), all.end(), [&](const Sighting& one) {
+        return one.f >= kLobeShare * brightest;
+    });
+    Sightings others(floor, all.end());
+    all.erase(floor, all.end());
+    thin(all, kMostLobeCells);
+    thin(others, kMostFloorCells);
+    all.insert(all.end(), others.begin(), others.end());
+    return all;
+}
+
+Direction normalOf(double x, double y) { return *Direction::fromVector({x, y, 1}); }
+
+/// How strong floor and lobe are under one LED: linear least squares.
+TiltLobe strengths(std::span<const Sighting> sightings,
+                   const Shape& shape,
+                   const Eigen::Matrix3d& turn) {
+    Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
+    Eigen::Vector2d right = Eigen::Vector2d::Zero();
+    for (const Sighting& one : sightings) {
+        const Parts parts = partsOf(shape, turn, {one.wi, one.wo});
+        const Eigen::Vector2d row = Eigen::Vector2d(parts.floor, parts.lobe) / one.sigma();
+        normal += row * row.transpose();
+        right += row * (one.f / one.sigma());
+    }
+    const Eigen::Vector2d found = normal.completeOrthogonalDecomposition().solve(right);
+    return {.diffuse = std::max(0.0, found[0]),
+            .specular = std::max(0.0, found[1]),
+            .alpha = shape.alpha,
+            .f0 = shape.f0};
+}
+
+double shownBy(const TiltLobe& lobe, const Eigen::Matrix3d& turn, const LightView& pair) {
+    const Parts parts = partsOf({lobe.alpha, lobe.f0}, turn, pair);
+    return lobe.diffuse * parts.floor + lobe.specular * parts.lobe;
+}
+
+/// (measured - fitted) over what that may be, of one LED.
+void residualsOf(std::span<const Sighting> sightings,
+                 const Shape& shape,
+                 const Direction& normal,
+                 std::span<double> out) {
+    const Eigen::Matrix3d turn = toSurface(normal);
+    const TiltLobe lobe = strengths(sightings, shape, turn);
+    for (std::size_t i = 0; i < sightings.size(); ++i) {
+        const Sighting& one = sightings[i];
+        out[i] = (one.f - shownBy(lobe, turn, {one.wi, one.wo})) / one.sigma();
+    }
+}
+
+/// Parameters of the joint fit: n.x / n.z, n.y / n.z, ln alpha, ln f0.
+Shape shapeOf(std::span<const double> p) { return {std::exp(p[2]), std::exp(p[3])}; }
+
+constexpr double kNarrowest = 1e-3, kDimmest = 1e-3;
+
+std::size_t countOf(const std::vector<Sightings>& leds) {
+    std::size_t count = 0;
+    for (const Sightings& led : leds) count += led.size();
+    return count;
+}
+
+FitReport fitJoint(const std::vector<Sightings>& leds, double alpha) {
+    const auto residuals = [&](std::span<const double> p, std::span<double> out) {
+        for (const Sightings& led : leds) {
+            residualsOf(led, shapeOf(p), normalOf(p[0], p[1]), out.first(led.size()));
+            out = out.subspan(led.size());
+        }
+        return true;
+    };
+    return fit({.residuals = residuals,
+                .residualCount = countOf(leds),
+                .start = {0, 0, std::log(alpha), std::log(0.1)},
+                .lower = {-kSteepest, -kSteepest, std::log(kNarrowest), std::log(kDimmest)},
+                .upper = {kSteepest, kSteepest, 0, 0},
+                .maxIterations = kMostIterations});
+}
+
+/// Sum of squared residuals where there is no lobe, only the floor.
+double matt(const std::vector<Sightings>& leds) {
+    double sum = 0;
+    for (const Sightings& led : leds) {
+        double ff = 0, f1 = 0, one1 = 0;
+        for (const Sighting& one : led) {
+            const double weight = 1 / (one.sigma() * one.sigma());
+            ff += weight * one.f * one.f;
+            f1 += weight * one.f;
+            one1 += weight;
+        }
+        if (one1 > 0) sum += ff - f1 * f1 / one1;
+    }
+    return sum;
+}
+
+/// From several widths, as a start too narrow or too wide does not see the lobe. Empty: there is
+/// none.
+std::optional<FitReport> bestJoint(const std::vector<Sightings>& leds) {
+    std::optional<FitReport> best;
+    for (double alpha : {0.05, 0.2, 0.5}) {
+        FitReport report = fitJoint(leds, alpha);
+        if (report.ok() && (!best || report.rms < best->rms)) best = std::move(report);
+    }
+    if (!best) return best;
+    const double left = best->rms * best->rms * static_cast<double>(countOf(leds));
+    const double without = matt(leds);
+    if (without - left < kLobeChiSquare || without < kLobeGain * left) return std::nullopt;
+    return best;
+}
+
+/// Root mean square of the relative misfit, beyond the noise, over the lobes of one LED.
+double misfitOf(std::span<const Sighting> sightings,
+                const TiltLobe& lobe,
+                const Direction& normal) {
+    const Eigen::Matrix3d turn = toSurface(normal);
+    double squares = 0;
+    for (const Sighting& one : sightings) {
+        const double off = one.f - shownBy(lobe, turn, {one.wi, one.wo});
+        if (one.f > 0) squares += (off * off - one.u * one.u) / (one.f * one.f);
+    }
+    return std::sqrt(std::max(0.0, squares) /
+                     static_cast<double>(std::max<std::size_t>(1, sightings.size())));
+}
+
+/// Of either axis: the fit's own, what a misfit may do, and the lens map's.
+Radians uncertaintyOf(const FitReport& report, double misfit, double alpha, Radians uAngle) {
+    const double own = std::max(1.0, report.rms) *
+                       std::sqrt(std::max(report.covariance(0, 0), report.covariance(1, 1)));
+    return Radians(std::hypot(own, misfit * alpha / 4, uAngle.value()));
+}
+
+/// One LED's own normal, the lobe's width held.
+std::optional<Normal> normalSeenBy(std::span<const Sighting> sightings,
+                                   const Shape& shape,
+                                   const Normal& joint,
+                                   Radians uAngle) {
+    const auto residuals = [&](std::span<const double> p, std::span<double> out) {
+        residualsOf(sightings, shape, normalOf(p[0], p[1]), out);
+        return true;
+    };
+    const Direction& from = joint.direction;
+    const FitReport report = fit({.residuals = residuals,
+                                  .residualCount = sightings.size(),
+                                  .start = {from.x() / from.z(), from.y() / from.z()},
+                                  .lower = {-kSteepest, -kSteepest},
+                                  .upper = {kSteepest, kSteepest},
+                                  .maxIterations = kMostIterations});
+    if (!report.ok()) return std::nullopt;
+    const Direction own = normalOf(report.params[0], report.params[1]);
+    const double misfit = misfitOf(sightings, strengths(sightings, shape, toSurface(own)), own);
+    const Radians u = uncertaintyOf(report, misfit, shape.alpha, uAngle);
+    if (u.value() > kWorstUncertainty) return std::nullopt;
+    return Normal{own, u};
+}
+
+Radians wavinessOf(const TiltEstimate& estimate) {
+    double squares = 0;
+    int count = 0;
+    for (const auto& led : estimate.leds) {
+        if (!led) continue;
+        const double apart = angleBetween({led->direction, estimate.joint.direction}).value();
+        squares += apart * apart - 2 * led->u.value() * led->u.value();
+        ++count;
+    }
+    return Radians(count < 2 ? 0 : std::sqrt(std::max(0.0, squares / count)));
+}
+
+}  // namespace
+
+double tiltedLobe(const TiltLobe& lobe, const Direction& normal, const LightView& pair) {
+    return shownBy(lobe, toSurface(normal), pair);
+}
+
+std::optional<TiltEstimate> estimateTilt(const SampleSet& sample, Radians uAngle) {
+    std::vector<Sightings> leds;
+    for (const LedTable& led : sample.leds) leds.push_back(sightingsOf(led));
+    const std::optional<FitReport> report = bestJoint(leds);
+    if (!report) return std::nullopt;
+    const Shape shape = shapeOf(report->params);
+    TiltEstimate estimate{.joint = {normalOf(report->params[0], report->params[1]), {}},
+                          .leds = {},
+                          .lobes = {},
+                          .waviness = {}};
+    const Direction& normal = estimate.joint.direction;
+    for (const Sightings& led : leds) {
+        estimate.lobes.push_back(strengths(led, shape, toSurface(normal)));
+        const double misfit = misfitOf(led, estimate.lobes.back(), normal);
+        estimate.misfit = std::max(estimate.misfit, misfit);
+    }
+    estimate.joint.u = uncertaintyOf(*report, estimate.misfit, shape.alpha, uAngle);
+    if (estimate.joint.u.value() > kWorstUncertainty) return std::nullopt;
+    for (const Sightings& led : leds) {
+        estimate.leds.push_back(normalSeenBy(led, shape, estimate.joint, uAngle));
+    }
+    estimate.waviness = wavinessOf(estimate);
+    return estimate;
+}
+
+}  // namespace gonio::proc

@@ -1,0 +1,60 @@
+#pragma once
+// How a sample lies under the rig, from the lobes that it shows to its LEDs. In: its calibrated f
+// over CellGrid, as if it lay flat. Out: its normal n in the rig's frame, how well that is known,
+// and the normal that each LED sees for itself.
+//
+// A surface on a tilt reflects by its own frame: with R the smallest turn that takes z to n, what
+// is measured as f at (wi, wo) is
+//     f'(wi, wo) = f(R^T wi, R^T wo) (R^T wo).z / wo.z,
+// as the lit spot lies within the aperture's view. n is fitted jointly to all LEDs, with f a
+// Lambert floor and one GGX lobe [Walter2007] common to them; where a real lobe is none, the misfit
+// widens the uncertainty. Each LED's own normal is then fitted with that lobe held: on a wavy
+// surface they disagree by more than they can be wrong.
+//
+// A matt sample shows no lobe: its normal is not determined, and its tilt does no harm. A lobe
+// narrower than the cells (alpha < 0.02, 1 degree) is located to a fraction of a cell only.
+
+#include <optional>
+#include <vector>
+
+#include "proc/core/direction.h"
+#include "proc/table/sample_set.h"
+
+namespace gonio::proc {
+
+/// What one LED sees of the surface that the normal is fitted with: diffuse / pi + specular D V F,
+/// both the mean of the bands, F by Schlick with f0.
+struct TiltLobe {
+    double diffuse = 0;
+    double specular = 1;
+    double alpha = 0.1;
+    double f0 = 0.04;
+};
+
+/// A normal, and its standard uncertainty about either axis (k = 1).
+struct Normal {
+    Direction direction;
+    Radians u;
+    [[nodiscard]] Radians tilt() const { return direction.theta(); }
+};
+
+struct TiltEstimate {
+    Normal joint;
+    std::vector<std::optional<Normal>> leds;  ///< as the set's; empty: not determined
+    std::vector<TiltLobe> lobes;              ///< by LED
+    double misfit = 0;  ///< rms of (measured - fitted) / measured over the lobes, beyond the noise
+    /// Root mean square angle between the LEDs' normals and the joint one, beyond their
+    /// uncertainties; 0 where these explain it.
+    Radians waviness;
+};
+
+/// `uAngle`: standard uncertainty of the lens map's directions, per axis. Empty where no normal is
+/// determined: no lobe, no cell measured, or a fit that fails.
+[[nodiscard]] std::optional<TiltEstimate> estimateTilt(const SampleSet& sample, Radians uAngle);
+
+/// f at a direction pair as a surface on a tilt shows it, by the fitted lobe.
+[[nodiscard]] double tiltedLobe(const TiltLobe& lobe,
+                                const Direction& normal,
+                                const LightView& pair);
+
+}  // namespace gonio::proc

@@ -1,0 +1,110 @@
+#include "proc/quality/tilt_correction.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <utility>
+
+#include "proc/core/parallel.h"
+#include "proc/optics/cell_grid.h"
+#include "proc/table/sample_lookup.h"
+
+namespace gonio::proc {
+namespace {
+
+/// One cell of one band, and what its LED sees of the fitted surface.
+struct Place {
+    std::size_t cell = 0;
+    Band band = Band::R;
+    LightView pair;
+    const TiltLobe& lobe;
+};
+
+/// Applies `change(cells, place)` to all measured cells.
+template <class Change>
+void forEachCell(SampleSet& sample, const TiltEstimate& estimate, const Change& change) {
+    for (std::size_t i = 0; i < sample.leds.size(); ++i) {
+        LedTable& led = sample.leds[i];
+        const Direction wi = Direction::fromSpherical(led.incidence, Radians(0));
+        parallelFor(CellGrid::count(), [&](IndexRange cells) {
+            for (std::size_t cell = cells.begin; cell < cells.end; ++cell) {
+                for (const Band band : kBands) {
+                    CellSamples& samples = led.bands[index(band)];
+                    if (samples.size() == 0 || !samples.present(cell)) continue;
+                    change(samples,
+                           Place{cell, band, {wi, CellGrid::centre(cell)}, estimate.lobes[i]});
+                }
+            }
+        });
+    }
+}
+
+void forget(CellSamples& cells, std::size_t cell) {
+    cells.f[cell] = cells.uRandom[cell] = cells.uSystematic[cell] = std::nan("");
+    cells.nEff[cell] = 0;
+    cells.flags[cell].clear(Flag::Measured);
+}
+
+/// Adds |d f / d tilt| u, about both axes together.
+void widen(CellSamples& cells, const Place& place, Radians u) {
+    const double here = tiltedLobe(place.lobe, Direction(), place.pair);
+    if (!(here > 0)) return;
+    const double step = std::tan(u.value());
+    const auto along = [&](double x, double y) {
+        return tiltedLobe(place.lobe, *Direction::fromVector({x, y, 1}), place.pair);
+    };
+    const double relative =
+        std::hypot(along(step, 0) - along(-step, 0), along(0, step) - along(0, -step)) / (2 * here);
+    double& systematic = cells.uSystematic[place.cell];
+    systematic = std::hypot(systematic, std::abs(cells.f[place.cell]) * relative);
+}
+
+/// Measured over fitted, cell by cell.
+SampleSet quotients(SampleSet sample, const TiltEstimate& estimate) {
+    forEachCell(sample, estimate, [&](CellSamples& cells, const Place& place) {
+        const double fitted = tiltedLobe(place.lobe, estimate.joint.direction, place.pair);
+        if (!(fitted > 0)) return forget(cells, place.cell);
+        cells.f[place.cell] /= fitted;
+        cells.uRandom[place.cell] /= fitted;
+        cells.uSystematic[place.cell] /= fitted;
+    });
+    return sample;
+}
+
+/// Where the rig sees the facet that a flat sample would show at this pair.
+std::optional<Direction> seenAt(const LightView& pair, const Eigen::Matrix3d& turn) {
+    const Eigen::Vector3d wi = pair.in.vector();
+    const Eigen::Vector3d half = turn * (wi + pair.out.vector()).normalized();
+    return Direction::fromVector(2 * half.dot(wi) * half - wi);
+}
+
+}  // namespace
+
+SampleSet tiltCorrected(const SampleSet& sample, const TiltEstimate& estimate) {
+    const SampleLookup smooth(quotients(sample, estimate));
+    const Eigen::Matrix3d turn = Eigen::Quaterniond::FromTwoVectors(
+                                     Eigen::Vector3d::UnitZ(), estimate.joint.direction.vector())
+                                     .toRotationMatrix();
+    SampleSet corrected = sample;
+    forEachCell(corrected, estimate, [&](CellSamples& cells, const Place& place) {
+        const auto at = seenAt(place.pair, turn);
+        const Answer answer = at && at->aboveHorizon() ? smooth.answer({place.pair.in, *at})
+                                                       : Answer::none({}, Source::Measured);
+        if (!std::isfinite(answer.f[place.band])) return forget(cells, place.cell);
+        const double flat = tiltedLobe(place.lobe, Direction(), place.pair);
+        cells.f[place.cell] = answer.f[place.band] * flat;
+        cells.uRandom[place.cell] = (*answer.uRandom)[place.band] * flat;
+        cells.uSystematic[place.cell] = (*answer.uSystematic)[place.band] * flat;
+        cells.flags[place.cell].set(Flag::TiltCorrected);
+        widen(cells, place, estimate.joint.u);
+    });
+    return corrected;
+}
+
+SampleSet withTiltUncertainty(SampleSet sample, const TiltEstimate& estimate) {
+    const Radians u(std::hypot(estimate.joint.tilt().value(), estimate.joint.u.value()));
+    forEachCell(
+        sample, estimate, [&](CellSamples& cells, const Place& place) { widen(cells, place, u); });
+    return sample;
+}
+
+}  // namespace gonio::proc

@@ -1,0 +1,23 @@
+#pragma once
+// A tilted sample's f, referred to its own normal. The facet that a flat sample would show at
+// (wi, wo), with the half vector h, lies at R h; the rig sees it at
+//     wo* = 2 (R h . wi) R h - wi,
+// and what was measured there is carried to (wi, wo) by the fitted lobe (tilt.h):
+//     f(wi, wo) = [f' / lobe'](wi, wo*) lobe(wi, wo).
+// The quotient is smooth, so that it is interpolated between the cells; at the lobe itself the
+// distribution of facets is the same on both sides and cancels, whatever its real shape.
+//
+// Where a cell that is needed is missing, or wo* is beyond the field, the answer is missing. The
+// tilt's uncertainty times the slope of the lobe goes into u_systematic, corrected or not.
+
+#include "proc/quality/tilt.h"
+
+namespace gonio::proc {
+
+/// Flags each cell TiltCorrected.
+[[nodiscard]] SampleSet tiltCorrected(const SampleSet& sample, const TiltEstimate& estimate);
+
+/// As it is, but for what the tilt that was found, and its uncertainty, may do to it.
+[[nodiscard]] SampleSet withTiltUncertainty(SampleSet sample, const TiltEstimate& estimate);
+
+}  // namespace gonio::proc
