@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "proc/core/frame.h"
+#include "proc/radiance/dark.h"
 #include "proc/radiance/noise.h"
 
 namespace gonio::test {
@@ -54,6 +55,25 @@ inline Frame take(const Shot& shot,
     for (std::uint16_t& pixel : frame.pixels.pixels()) pixel = normal();
     for (const Hot& h : hot) frame.pixels.at(h.x, h.y) = exposed(h.electronsPerSecond)();
     return frame;
+}
+
+/// Dark frames without noise, of the exposures of the shots: the black level and the mean of the
+/// dark current.
+inline proc::DarkLibrary perfectDarks(const std::vector<Shot>& shots,
+                                      Size size,
+                                      const proc::SensorNoise& noise = {}) {
+    proc::DarkLibrary library;
+    for (const Shot& shot : shots) {
+        proc::DarkFrame dark;
+        const double dn =
+            kBlackDn + noise.darkElectronsPerSecond * shot.seconds / noise.electronsPerDn;
+        dark.mean = Image<float>(size, static_cast<float>(dn));
+        dark.exposure.granted = Nanoseconds(std::llround(shot.seconds * 1e9));
+        dark.window = {.size = size};
+        dark.frames = 1;
+        library.add(dark);
+    }
+    return library;
 }
 
 }  // namespace gonio::test
