@@ -81,6 +81,9 @@ public:
     /// Empties it for another bracket, and keeps its memory for that.
     void restart(Band band);
 
+    /// The group's effective time is that times `factor`.
+    void scaleGroup(std::size_t group, double factor) { sums_.groups[group].tau *= factor; }
+
     [[nodiscard]] const BracketSums& sums() const { return sums_; }
     /// What it holds in memory, apart from the dark frames.
     [[nodiscard]] std::size_t bytes() const;

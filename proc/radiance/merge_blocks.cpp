@@ -19,6 +19,10 @@ double total(const BlockOfPixels& of) {
     return sum;
 }
 
+/// Added to a divisor, so that 0 / 0 is 0 without a choice: the compiler would compute both sides
+/// of it. Lost in any other divisor here; its inverse is a float.
+constexpr double kTiny = 1e-37;
+
 /// At most 255.
 std::uint8_t capped(double count) {
     return static_cast<std::uint8_t>(static_cast<int>(std::min(count, 255.0)));
@@ -63,8 +67,7 @@ std::uint8_t capped(double count) {
     double electronsPerDn, double members, MergeBlock& block) {
     const double scale = electronsPerDn / members;
     for (std::size_t x = 0; x < kBlock; ++x) {
-        const double tau = block.tau[x] > 0 ? block.tau[x] : 1;
-        block.shot[x] = std::max(scale * block.net[x] / tau, 0.0);
+        block.shot[x] = std::max(scale * block.net[x] / (block.tau[x] + kTiny), 0.0);
     }
 }
 
@@ -94,7 +97,7 @@ std::uint8_t capped(double count) {
         for (std::size_t x = 0; x < kBlock; ++x) block.wxx[x] += squares[x];
     } else {
         for (std::size_t x = 0; x < kBlock; ++x)
-            block.wxx[x] += squares[x] / std::max(group.count[x], 1.0);
+            block.wxx[x] += squares[x] / (group.count[x] + kTiny);
     }
 }
 
@@ -102,7 +105,7 @@ std::uint8_t capped(double count) {
     double frames, const MergeBlock& block, const MergedBlock& out) {
     BlockOfPixels radiance, variance, chiSquare, freedom, unused;
     for (std::size_t x = 0; x < kBlock; ++x) {
-        const double inverse = 1 / (block.w[x] > 0 ? block.w[x] : 1);
+        const double inverse = 1 / (block.w[x] + kTiny);
         radiance[x] = block.wx[x] * inverse;
         variance[x] = inverse;
         const double rest = block.wxx[x] - block.wx[x] * radiance[x];
