@@ -119,4 +119,26 @@ inline proc::DarkLibrary perfectDarks(const std::vector<Shot>& shots,
     return library;
 }
 
+/// 1 / sum tau^2 / var over what is not saturated: no unbiased estimate of `light` has a smaller
+/// variance.
+inline double cramerRao(const std::vector<Shot>& shots, double light) {
+    const proc::SensorNoise noise;
+    double information = 0;
+    for (const Shot& shot : shots) {
+        const double tau = shot.seconds * shot.level / 65535.0;
+        const double electrons = light * tau;
+        if (electrons > (noise.saturationDn() - kBlackDn) * noise.electronsPerDn) continue;
+        information += tau * tau / noise.variance(electrons, shot.seconds);
+    }
+    return 1 / information;
+}
+
+/// Seven exposures, 20 us times 1, 8, 64 ...
+inline std::vector<Shot> wideLadder() {
+    std::vector<Shot> shots;
+    for (double seconds = 20e-6; shots.size() < 7; seconds *= 8)
+        shots.push_back({.seconds = seconds});
+    return shots;
+}
+
 }  // namespace gonio::test

@@ -19,26 +19,6 @@ using test::take;
 
 constexpr int kLevels = 25;
 
-/// 20 us times 1, 8, 64, ...: 7 frames.
-std::vector<Shot> ladder() {
-    std::vector<Shot> shots;
-    for (double seconds = 20e-6; shots.size() < 7; seconds *= 8)
-        shots.push_back({.seconds = seconds});
-    return shots;
-}
-
-/// sqrt(1 / sum t^2 / var) over the exposures that are not saturated.
-double cramerRao(const std::vector<Shot>& shots, double light) {
-    const SensorNoise noise;
-    double information = 0;
-    for (const Shot& shot : shots) {
-        const double electrons = light * shot.seconds;
-        if (electrons > (noise.saturationDn() - test::kBlackDn) * noise.electronsPerDn) continue;
-        information += shot.seconds * shot.seconds / noise.variance(electrons, shot.seconds);
-    }
-    return 1 / std::sqrt(information);
-}
-
 TEST(MergeAccuracy, ReachesTheCramerRaoBoundOverAMillionToOne) {
     // 25 levels from 420 to 4.2e8 electrons per second, none within 4 % of a border of saturation.
     // Nightly 102,400 pixels a level, else 16,384.
@@ -49,7 +29,7 @@ TEST(MergeAccuracy, ReachesTheCramerRaoBoundOverAMillionToOne) {
     // their mean 1 / sqrt(n); 3.5 of them in 25 levels are one failure in 90 where the bound is met
     // exactly. Nightly that is 0.8 % of RMS, and 0.02 % of the dimmest level's mean.
     const double slack = 3.5 / std::sqrt(2 * pixels);
-    const std::vector<Shot> shots = ladder();
+    const std::vector<Shot> shots = test::wideLadder();
     const DarkLibrary darks = perfectDarks(shots, size);
     std::mt19937_64 random(71);
     for (int level = 0; level < kLevels; ++level) {
@@ -67,7 +47,7 @@ TEST(MergeAccuracy, ReachesTheCramerRaoBoundOverAMillionToOne) {
             sum += error / pixels;
             squares += error * error / pixels;
         }
-        const double bound = cramerRao(shots, light);
+        const double bound = std::sqrt(test::cramerRao(shots, light));
         EXPECT_LT(std::abs(sum) / light, 0.0015 + 3.5 * bound / light / std::sqrt(pixels)) << light;
         EXPECT_LT(std::sqrt(squares) / bound, 1.03 * (1 + slack)) << light;
         EXPECT_GT(std::sqrt(squares) / bound, 1 - slack - 0.01) << light;  // the bound is one

@@ -198,9 +198,7 @@ TEST_F(MergeExtremes, AllPixelsAreHot) {
 TEST_F(MergeExtremes, AtEightyDegrees) {
     // 3 e-/s at 25 degC, doubled every 7 K: 696 e-/s. 5.2 s then fill half the well in the dark.
     const SensorNoise noise{.darkElectronsPerSecond = 3 * std::pow(2, 55 / 7.0)};
-    std::vector<Shot> shots;
-    for (double seconds = 20e-6; shots.size() < 7; seconds *= 8)
-        shots.push_back({.seconds = seconds});
+    const std::vector<Shot> shots = test::wideLadder();
     const DarkLibrary darks = takenDarks(shots, noise, random_);
     for (const double light : {0.0, 420.0, 1e5}) {
         const MergedState state = merged(bracketOf(shots, light, random_, noise), darks, noise);

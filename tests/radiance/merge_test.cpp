@@ -11,6 +11,7 @@ namespace {
 
 using namespace gonio;
 using namespace gonio::proc;
+using gonio::test::cramerRao;
 using gonio::test::perfectDarks;
 using gonio::test::Shot;
 using gonio::test::take;
@@ -34,19 +35,6 @@ std::vector<Shot> ladder() {
     shots.push_back({.seconds = 20e-6, .level = 3277});
     shots.push_back({.seconds = 20e-6, .level = 164});
     return shots;
-}
-
-/// 1 / sum t^2 / var over what is not saturated: no unbiased estimate has a smaller variance.
-double cramerRao(const std::vector<Shot>& shots, double light) {
-    const SensorNoise noise;
-    double information = 0;
-    for (const Shot& shot : shots) {
-        const double tau = shot.seconds * shot.level / 65535.0;
-        const double electrons = light * tau;
-        if (electrons > (noise.saturationDn() - test::kBlackDn) * noise.electronsPerDn) continue;
-        information += tau * tau / noise.variance(electrons, shot.seconds);
-    }
-    return 1 / information;
 }
 
 struct Moments {
