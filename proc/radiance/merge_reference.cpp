@@ -47,7 +47,12 @@ double excessDn(const DarkFrame& dark, int x, int y) {
 }
 
 /// What one group saw at one pixel.
-Samples samplesOf(const ExposureGroup& group, int x, int y, const SensorNoise& noise, int members) {
+Samples samplesOf(const ExposureGroup& group,
+                  int x,
+                  int y,
+                  const SensorNoise& noise,
+                  const Linearity& linearity,
+                  int members) {
     const double k = noise.electronsPerDn;
     const double hot = excessDn(*group.dark, x, y);
     Samples s{.tau = group.tau,
@@ -58,8 +63,8 @@ Samples samplesOf(const ExposureGroup& group, int x, int y, const SensorNoise& n
               .electrons = {}};
     for (const Frame* frame : group.frames) {
         if (!usableReference(frame->pixels, x, y, noise, hot)) continue;
-        const double dark = static_cast<double>(group.dark->mean.at(x, y));
-        s.electrons.push_back((frame->pixels.at(x, y) - dark) * k);
+        const double dark = linearity.corrected(static_cast<double>(group.dark->mean.at(x, y)));
+        s.electrons.push_back((linearity.corrected(frame->pixels.at(x, y)) - dark) * k);
     }
     return s;
 }
@@ -97,7 +102,8 @@ Estimate estimate(const std::vector<Samples>& groups, const SensorNoise& noise, 
 Result<MergedState> mergeReference(std::span<const Frame> bracket,
                                    Band band,
                                    const DarkLibrary& darks,
-                                   const SensorNoise& noise) {
+                                   const SensorNoise& noise,
+                                   const Linearity& linearity) {
     Result<std::vector<ExposureGroup>> groups = exposureGroups(bracket, band, darks);
     if (!groups) return groups.error();
     const Frame& first = bracket.front();
@@ -114,7 +120,7 @@ Result<MergedState> mergeReference(std::span<const Frame> bracket,
             std::vector<Samples> samples;
             std::size_t used = 0;
             for (const ExposureGroup& group : *groups) {
-                samples.push_back(samplesOf(group, x, y, noise, members));
+                samples.push_back(samplesOf(group, x, y, noise, linearity, members));
                 used += samples.back().electrons.size();
             }
             const Estimate e = estimate(samples, noise, members);

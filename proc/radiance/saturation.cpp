@@ -18,6 +18,26 @@ Beside beside(int at, int count) {
     return {at == 0 ? 1 : at - 1, at == last ? last - 1 : at + 1};
 }
 
+/// A row and its neighbours, and below what the sum of the four and the sample itself must stay.
+struct Rows {
+    std::span<const std::uint16_t> above, here, below;
+    int mostAround, most;
+
+    [[nodiscard]] std::uint8_t verdict(std::size_t x, std::size_t left, std::size_t right) const {
+        const int around = here[left] + here[right] + above[x] + below[x];
+        return static_cast<std::uint8_t>(static_cast<int>(around < mostAround) &
+                                         static_cast<int>(here[x] < most));
+    }
+};
+
+/// All but the ends.
+[[gnu::target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")]] void markInside(
+    const Rows& borrowed, std::span<std::uint8_t> usable) {
+    const Rows rows = borrowed;
+    const std::size_t last = usable.size() - 1;
+    for (std::size_t x = 1; x < last; ++x) usable[x] = rows.verdict(x, x - 1, x + 1);
+}
+
 }  // namespace
 
 void markUsable(const Image<std::uint16_t>& picture,
@@ -26,26 +46,20 @@ void markUsable(const Image<std::uint16_t>& picture,
                 std::span<std::uint8_t> usable) {
     assert(usable.size() == static_cast<std::size_t>(picture.width()));
     const Beside rows = beside(y, picture.height());
-    const auto above = picture.row(rows.before);
-    const auto here = picture.row(y);
-    const auto below = picture.row(rows.after);
     // Whole numbers: sum < s is sum < ceil(s).
-    const int mostAround = static_cast<int>(std::ceil(4 * noise.saturationDn()));
-    const int most = static_cast<int>(std::ceil(noise.ceilingDn()));
-    const auto verdict = [&](std::size_t x, std::size_t left, std::size_t right) {
-        const int around = here[left] + here[right] + above[x] + below[x];
-        return static_cast<std::uint8_t>(static_cast<int>(around < mostAround) &
-                                         static_cast<int>(here[x] < most));
-    };
-    const std::size_t last = here.size() - 1;
+    const Rows around{.above = picture.row(rows.before),
+                      .here = picture.row(y),
+                      .below = picture.row(rows.after),
+                      .mostAround = static_cast<int>(std::ceil(4 * noise.saturationDn())),
+                      .most = static_cast<int>(std::ceil(noise.ceilingDn()))};
     const auto atEnd = [&](std::size_t x) {
         const Beside columns = beside(static_cast<int>(x), picture.width());
-        return verdict(
+        return around.verdict(
             x, static_cast<std::size_t>(columns.before), static_cast<std::size_t>(columns.after));
     };
-    usable[0] = atEnd(0);
-    for (std::size_t x = 1; x < last; ++x) usable[x] = verdict(x, x - 1, x + 1);
-    usable[last] = atEnd(last);
+    markInside(around, usable);
+    usable.front() = atEnd(0);
+    usable.back() = atEnd(usable.size() - 1);
 }
 
 bool usableReference(

@@ -1,0 +1,48 @@
+#include "proc/radiance/group_noise.h"
+
+#include <algorithm>
+
+namespace gonio::proc {
+namespace {
+
+/// The sums of a proportional sensor: of n samples n times the correction of their mean.
+void makeLinear(std::span<const float> dark, const Linearity& linearity, GroupBlock& block) {
+    for (std::size_t x = 0; x < dark.size(); ++x) {
+        const double n = block.count[x];
+        if (n == 0) continue;
+        const auto darkDn = static_cast<double>(dark[x]);
+        block.net[x] +=
+            n * (linearity.correction(block.net[x] / n + darkDn) - linearity.correction(darkDn));
+    }
+}
+
+}  // namespace
+
+GroupFigures figuresOf(const GroupSums& group, const BracketSums& sums) {
+    const double k = sums.noise.electronsPerDn;
+    const double rounding = k * k / 12;
+    const double analogue = sums.noise.darkVariance(group.seconds) - rounding;
+    return {.tau = group.tau,
+            .floorVariance = analogue / sums.members() + rounding,
+            .darkVariance = group.dark->varianceOfMean * k * k,
+            .excessInDark = 1.0 / std::max(1, group.dark->frames),
+            .single = group.frames == 1};
+}
+
+void readGroup(const BracketSums& sums, std::size_t group, const BlockAt& at, GroupBlock& out) {
+    const GroupSums& of = sums.groups[group];
+    const auto dark = at.of(of.dark->mean);
+    unpackTallies(at.of(of.tallies), dark, out);
+    if (!sums.linearity.identity()) makeLinear(dark, sums.linearity, out);
+    const auto hotPixels = of.dark->hotInRow(at.y);
+    out.anyHot = !hotPixels.empty();
+    if (!out.anyHot) return;
+    out.excess.fill(0);
+    const double electrons = sums.noise.electronsPerDn / sums.members();
+    for (const HotPixel& hot : hotPixels) {
+        const auto x = static_cast<std::size_t>(hot.x - at.x);  // far to the right if on the left
+        if (x < dark.size()) out.excess[x] = hot.excessDn * electrons;
+    }
+}
+
+}  // namespace gonio::proc

@@ -1,0 +1,131 @@
+#include "proc/radiance/merge_blocks.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace gonio::proc {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+/// Sum of a block in eight strands, which an addition of doubles would otherwise serialise.
+double total(const BlockOfPixels& of) {
+    constexpr std::size_t kStrands = 8;
+    std::array<double, kStrands> sums{};
+    for (std::size_t x = 0; x < kBlock; x += kStrands)
+        for (std::size_t i = 0; i < kStrands; ++i) sums[i] += of[x + i];
+    double sum = 0;
+    for (const double strand : sums) sum += strand;
+    return sum;
+}
+
+/// Added to a divisor, so that 0 / 0 is 0 without a choice: the compiler would compute both sides
+/// of it. Lost in any other divisor here; its inverse is a float.
+constexpr double kTiny = 1e-37;
+
+/// At most 255.
+std::uint8_t capped(double count) {
+    return static_cast<std::uint8_t>(static_cast<int>(std::min(count, 255.0)));
+}
+
+}  // namespace
+
+[[gnu::target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")]] void addUsable(
+    std::span<const std::uint16_t> row,
+    std::span<const std::uint8_t> usable,
+    std::span<std::uint32_t> tallies) {
+    constexpr std::uint32_t kOne = 1U << kSumBits;
+    for (std::size_t x = 0; x < tallies.size(); ++x) {
+        const std::uint32_t all = 0U - usable[x];  // every bit set where it is usable
+        tallies[x] += all & (kOne | row[x]);
+    }
+}
+
+[[gnu::target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")]] void unpackTallies(
+    std::span<const std::uint32_t> tallies, std::span<const float> dark, GroupBlock& block) {
+    const std::size_t width = tallies.size();
+    for (std::size_t x = 0; x < width; ++x) {
+        const auto n = static_cast<double>(static_cast<int>(tallies[x] >> kSumBits));
+        const auto sum = static_cast<double>(static_cast<int>(tallies[x] & kLargestSum));
+        block.count[x] = n;
+        block.net[x] = sum - n * static_cast<double>(dark[x]);
+    }
+    std::fill(block.count.begin() + static_cast<std::ptrdiff_t>(width), block.count.end(), 0.0);
+    std::fill(block.net.begin() + static_cast<std::ptrdiff_t>(width), block.net.end(), 0.0);
+}
+
+[[gnu::target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")]] void pool(
+    const GroupBlock& group, double tau, MergeBlock& block) {
+    for (std::size_t x = 0; x < kBlock; ++x) {
+        block.net[x] += group.net[x];
+        block.count[x] += group.count[x];
+        block.tau[x] += tau * group.count[x];
+    }
+}
+
+[[gnu::target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")]] void findShot(
+    double electronsPerDn, double members, MergeBlock& block) {
+    const double scale = electronsPerDn / members;
+    for (std::size_t x = 0; x < kBlock; ++x) {
+        block.shot[x] = std::max(scale * block.net[x] / (block.tau[x] + kTiny), 0.0);
+    }
+}
+
+[[gnu::target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")]] void weigh(
+    const GroupBlock& group,
+    const GroupFigures& figures,
+    double electronsPerDn,
+    MergeBlock& block) {
+    const GroupFigures f = figures;
+    const BlockOfPixels& excess = group.anyHot ? group.excess : kNoExcess;
+    BlockOfPixels squares;
+    // With n samples of sum e: variance of the mean v = single / n + dark, value e / (n tau),
+    // weight tau^2 / v.
+    for (std::size_t x = 0; x < kBlock; ++x) {
+        const double n = group.count[x];
+        const double e = electronsPerDn * group.net[x];
+        const double single = block.shot[x] * f.tau + f.floorVariance + excess[x];
+        const double dark = f.darkVariance + excess[x] * f.excessInDark;
+        const double inverse = 1 / (single + n * dark);  // 1 / (n v)
+        const double weighted = e * inverse;
+        block.w[x] += f.tau * f.tau * (n * inverse);
+        block.wx[x] += f.tau * weighted;
+        block.groups[x] += std::min(n, 1.0);
+        squares[x] = e * weighted;
+    }
+    if (f.single) {
+        for (std::size_t x = 0; x < kBlock; ++x) block.wxx[x] += squares[x];
+    } else {
+        for (std::size_t x = 0; x < kBlock; ++x)
+            block.wxx[x] += squares[x] / (group.count[x] + kTiny);
+    }
+}
+
+[[gnu::target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")]] BlockTotals conclude(
+    double frames, const MergeBlock& block, const MergedBlock& out) {
+    BlockOfPixels radiance, variance, chiSquare, freedom, unused;
+    for (std::size_t x = 0; x < kBlock; ++x) {
+        const double inverse = 1 / (block.w[x] + kTiny);
+        radiance[x] = block.wx[x] * inverse;
+        variance[x] = inverse;
+        const double rest = block.wxx[x] - block.wx[x] * radiance[x];
+        chiSquare[x] = block.groups[x] > 1 ? std::max(rest, 0.0) : 0;
+        freedom[x] = std::max(block.groups[x] - 1, 0.0);
+        unused[x] = 1 - std::min(block.groups[x], 1.0);
+    }
+    const std::size_t width = out.radiance.size();
+    for (std::size_t x = 0; x < width; ++x) {
+        const bool any = block.count[x] > 0;
+        out.radiance[x] = any ? static_cast<float>(radiance[x]) : kNan;
+        out.variance[x] = any ? static_cast<float>(variance[x]) : kNan;
+    }
+    for (std::size_t x = 0; x < width; ++x) {
+        out.used[x] = capped(block.count[x]);
+        out.saturated[x] = capped(frames - block.count[x]);
+    }
+    const auto behind = static_cast<double>(kBlock - width);  // pixels behind the end of the row
+    return {
+        .chiSquare = total(chiSquare), .freedom = total(freedom), .unused = total(unused) - behind};
+}
+
+}  // namespace gonio::proc

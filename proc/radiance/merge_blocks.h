@@ -1,0 +1,81 @@
+#pragma once
+// The loops of the merge over a block of pixels of one row, free of branches and of a fixed length
+// that stays in the nearest cache, so that they become vector instructions: the loader picks the
+// widest that the machine has (SSE2, AVX2 or AVX-512), and as nothing is contracted or reordered
+// all of them give the same bits. Their slow twin is mergeReference (merge.h).
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace gonio::proc {
+
+inline constexpr std::size_t kBlock = 128;
+using BlockOfPixels = std::array<double, kBlock>;
+
+// A tally: how many samples in its upper 10 bits, the sum of their DN in its lower 22.
+inline constexpr std::uint32_t kSumBits = 22;
+inline constexpr std::uint32_t kLargestSum = (1U << kSumBits) - 1;
+inline constexpr std::uint32_t kMostAlike = (1U << (32 - kSumBits)) - 1;
+
+/// Adds the samples of a row whose `usable` is 1 to the tallies.
+void addUsable(std::span<const std::uint16_t> row,
+               std::span<const std::uint8_t> usable,
+               std::span<std::uint32_t> tallies);
+
+inline constexpr BlockOfPixels kNoExcess{};
+
+/// One group's samples; nothing usable behind the end of the row.
+struct GroupBlock {
+    BlockOfPixels count{};   ///< usable samples
+    BlockOfPixels net{};     ///< their sum less the dark, DN
+    BlockOfPixels excess{};  ///< of a hot pixel: variance of a sample, electrons^2
+    bool anyHot = false;     ///< false: `excess` says nothing, there is none
+};
+
+/// Counts, and sums less `count` times the dark, of at most kBlock pixels.
+void unpackTallies(std::span<const std::uint32_t> tallies,
+                   std::span<const float> dark,
+                   GroupBlock& block);
+
+/// What does not depend on the pixel. Variances in electrons^2.
+struct GroupFigures {
+    double tau = 0;
+    double floorVariance = 0;  ///< of one sample in the dark
+    double darkVariance = 0;   ///< of the dark frame
+    double excessInDark = 0;   ///< share of a sample's excess that the dark frame has
+    bool single = false;       ///< one frame: a pixel has one sample or none
+};
+
+/// The sums over the groups, pixel by pixel.
+struct MergeBlock {
+    BlockOfPixels net{}, count{}, tau{};  ///< of all usable samples
+    BlockOfPixels shot{};                 ///< variance of the pooled light, electrons^2 per second
+    BlockOfPixels w{}, wx{}, wxx{};
+    BlockOfPixels groups{};  ///< that have a usable sample
+};
+
+void pool(const GroupBlock& group, double tau, MergeBlock& block);
+/// `shot` from what was pooled; a pixel is the mean of `members` sensor pixels.
+void findShot(double electronsPerDn, double members, MergeBlock& block);
+void weigh(const GroupBlock& group,
+           const GroupFigures& figures,
+           double electronsPerDn,
+           MergeBlock& block);
+
+/// Where the results of a block go: at most kBlock pixels.
+struct MergedBlock {
+    std::span<float> radiance, variance;
+    std::span<std::uint8_t> used, saturated;
+};
+/// Sums over pixels; the counts are whole numbers.
+struct BlockTotals {
+    double chiSquare = 0;
+    double freedom = 0;
+    double unused = 0;  ///< pixels without a usable sample
+};
+/// NaN where nothing is usable. `frames`: samples per pixel, usable or not.
+BlockTotals conclude(double frames, const MergeBlock& block, const MergedBlock& out);
+
+}  // namespace gonio::proc

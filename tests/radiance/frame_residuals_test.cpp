@@ -1,0 +1,144 @@
+#include "proc/radiance/frame_residuals.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "tests/radiance/frames.h"
+
+namespace gonio::proc {
+namespace {
+
+using test::perfectDarks;
+using test::Shot;
+
+std::vector<Shot> ladder() {
+    std::vector<Shot> shots;
+    for (double us : {20.0, 80.0, 320.0, 1280.0, 5120.0, 40000.0})
+        shots.push_back({.seconds = us * 1e-6});
+    shots.push_back({.seconds = 20e-6, .level = 3277});
+    return shots;
+}
+
+/// Reports on the bracket of a lobe; the light of frame i is times `gain(i)`.
+template <class Gain>
+FrameReport reportOf(const std::vector<Shot>& shots,
+                     Size size,
+                     std::mt19937_64& random,
+                     Gain gain) {
+    const DarkLibrary darks = perfectDarks(shots, size);
+    MergeAccumulator accumulator(Band::G, darks, {});
+    for (std::size_t i = 0; i < shots.size(); ++i) {
+        Frame frame = test::takeScene(test::lobe(size, 3e8 * gain(i)), shots[i], random);
+        frame.number = static_cast<std::uint32_t>(40 + i);
+        EXPECT_TRUE(accumulator.add(frame));
+    }
+    const auto state = mergeSums(accumulator.sums());
+    EXPECT_TRUE(state);
+    return frameResiduals(accumulator.sums(), *state);
+}
+
+TEST(FrameResiduals, AStepOfFivePerCentIsFlagged) {
+    std::mt19937_64 random(31);
+    for (std::size_t first = 1; first < ladder().size(); ++first) {
+        for (const double step : {1.05, 0.95}) {
+            const FrameReport report = reportOf(
+                ladder(), {96, 96}, random, [&](std::size_t i) { return i >= first ? step : 1; });
+            ASSERT_TRUE(report.change) << first;
+            EXPECT_EQ(report.change->first, first);
+            EXPECT_EQ(report.change->last, ladder().size() - 1);
+            // 5 % is found to 0.25 % of itself in second order.
+            EXPECT_NEAR(report.change->offset.size, step - 1, 4 * report.change->offset.u + 0.004);
+            EXPECT_GT(std::abs(report.change->offset.significance()), 5);
+        }
+    }
+}
+
+TEST(FrameResiduals, ASingleBrighterFrameIsNamed) {
+    std::mt19937_64 random(32);
+    const FrameReport report =
+        reportOf(ladder(), {96, 96}, random, [](std::size_t i) { return i == 3 ? 1.05 : 1; });
+    ASSERT_TRUE(report.change);
+    EXPECT_EQ(report.change->first, 3U);
+    EXPECT_EQ(report.change->last, 3U);
+    EXPECT_EQ(report.frames[3].number, 43U);
+    ASSERT_TRUE(report.frames[3].offset);
+    EXPECT_NEAR(report.frames[3].offset->size, 0.05, 4 * report.frames[3].offset->u + 0.004);
+    const FrameResidual& bad = report.frames[3];
+    // Its own chi^2 stands out: one degree of freedom per witness pixel, sigma sqrt(2 / pixels).
+    EXPECT_GT(bad.chiSquare / static_cast<double>(bad.freedom),
+              1 + 5 * std::sqrt(2 / static_cast<double>(bad.freedom)));
+}
+
+TEST(FrameResiduals, NoFalseAlarmInAThousandCleanBrackets) {
+    const bool nightly = std::getenv("GONIO_NIGHTLY") != nullptr;
+    const Size size = nightly ? Size{64, 64} : Size{16, 16};
+    const std::vector<Shot> shots{{.seconds = 20e-6},
+                                  {.seconds = 160e-6},
+                                  {.seconds = 1280e-6},
+                                  {.seconds = 10240e-6},
+                                  {.seconds = 20e-6, .level = 3277}};
+    const DarkLibrary darks = perfectDarks(shots, size);
+    const Image<double> light = test::lobe(size, 3e8);
+    std::mt19937_64 random(33);
+    int alarms = 0, beyond3 = 0, offsets = 0;
+    double chiSquare = 0, freedom = 0;
+    for (int bracket = 0; bracket < 1000; ++bracket) {
+        MergeAccumulator accumulator(Band::G, darks, {});
+        for (const Shot& shot : shots)
+            ASSERT_TRUE(accumulator.add(test::takeScene(light, shot, random)));
+        const auto state = mergeSums(accumulator.sums());
+        ASSERT_TRUE(state);
+        const FrameReport report = frameResiduals(accumulator.sums(), *state, 0);
+        alarms += report.change ? 1 : 0;
+        for (const FrameResidual& frame : report.frames) {
+            chiSquare += frame.chiSquare;
+            freedom += static_cast<double>(frame.freedom);
+            if (!frame.offset) continue;
+            ++offsets;
+            beyond3 += std::abs(frame.offset->significance()) > 3 ? 1 : 0;
+        }
+    }
+    EXPECT_EQ(alarms, 0);  // of any size
+    // Uncertainties are honest: 0.27 % of a Gaussian are beyond 3, and no less than a third of it.
+    EXPECT_LT(beyond3, 0.006 * offsets);
+    EXPECT_GT(beyond3, 0.0009 * offsets);
+    EXPECT_NEAR(chiSquare / freedom, 1, 0.01);
+}
+
+TEST(FrameResiduals, OneFrameSaysNothing) {
+    std::mt19937_64 random(34);
+    const FrameReport report =
+        reportOf({{.seconds = 1e-3}}, {40, 40}, random, [](std::size_t) { return 1; });
+    ASSERT_EQ(report.frames.size(), 1U);
+    EXPECT_FALSE(report.frames[0].offset);
+    EXPECT_EQ(report.frames[0].freedom, 0U);
+    EXPECT_FALSE(report.change);
+}
+
+TEST(FrameResiduals, ASampleThatMovedRaisesItsFramesChiSquare) {
+    const Size size{96, 96};
+    const std::vector<Shot> shots{{.seconds = 20e-6}, {.seconds = 25e-6}, {.seconds = 30e-6}};
+    const DarkLibrary darks = perfectDarks(shots, size);
+    std::mt19937_64 random(35);
+    MergeAccumulator accumulator(Band::G, darks, {});
+    const Image<double> light = test::lobe(size, 2e8);
+    Image<double> moved(size);
+    for (int y = 0; y < size.height; ++y)
+        for (int x = 0; x < size.width; ++x) moved.at(x, y) = light.at(std::max(0, x - 3), y);
+    for (std::size_t i = 0; i < 3; ++i)
+        ASSERT_TRUE(accumulator.add(test::takeScene(i == 1 ? moved : light, shots[i], random)));
+    const auto state = mergeSums(accumulator.sums());
+    ASSERT_TRUE(state);
+    const FrameReport report = frameResiduals(accumulator.sums(), *state);
+    const auto relative = [&](std::size_t i) {
+        return report.frames[i].chiSquare / static_cast<double>(report.frames[i].freedom);
+    };
+    EXPECT_GT(relative(1), 1.5 * relative(0));
+    EXPECT_GT(relative(1), 1.5 * relative(2));
+    EXPECT_GT(relative(1), 2);
+}
+
+}  // namespace
+}  // namespace gonio::proc
