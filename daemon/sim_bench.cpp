@@ -83,7 +83,7 @@ Result<std::unique_ptr<sim::InProcessDoor>> openSim(const SimState& state,
                           .bootCount = 1,
                           .errors = *errors,
                           .camera = cameraUsb == 3 ? sim::CameraKind::Usb3 : sim::CameraKind::Usb2,
-                          .ledDrift = state.systematic == "none" ? 0 : kLedDrift});
+                          .rig = {.ledDrift = state.systematic == "none" ? 0 : kLedDrift}});
     door->device().place(std::move(*placement));
     return door;
 }
