@@ -23,9 +23,9 @@ public:
           fullScale_(digits.fullScale),
           bow_(4 * nonLinearity) {}
 
-    /// What so many collected electrons are read as.
-    [[nodiscard]] double readAs(double electrons) const {
-        return electrons + bow_ * electrons * (1 - electrons * (1 / kFullWell));
+    /// By how many electrons so many collected ones are read wrong.
+    [[nodiscard]] double bow(double electrons) const {
+        return bow_ * electrons * (1 - electrons / kFullWell);
     }
     /// The nearest DN. The black level keeps it positive, so that cutting off rounds.
     [[nodiscard]] std::uint16_t digitised(double electrons) const {
@@ -118,8 +118,8 @@ void Sensor::darkElectrons(double darkTime, std::uint64_t first, std::span<doubl
 }
 
 std::vector<double> Sensor::columnErrors(const View& view, std::uint64_t shotKey) const {
+    if (errors_.columnNoise == 0 && errors_.nonLinearity == 0) return {};
     std::vector<double> columns(static_cast<std::size_t>(view.size.width));
-    if (errors_.columnNoise == 0) return columns;
     const std::uint64_t key = mixed(shotKey, 3);
     for (std::size_t x = 0; x < columns.size(); ++x) {
         columns[x] = errors_.columnNoise * gaussian(key, static_cast<std::uint64_t>(view.x) + x);
@@ -137,16 +137,16 @@ void Sensor::exposeRow(const Shot& shot,
     const std::uint64_t firstPixel = sensorRow * response_.row(0).size() + left;
     std::vector<double> dark(out.size());
     darkElectrons(shot.darkTime, firstPixel, dark);
+    const auto rate = shot.rate == nullptr ? std::span<const float>() : shot.rate->row(row);
     const Converter converter(digits_, errors_.nonLinearity);
+    const bool faithful = shot.columns.empty();
     for (std::size_t x = 0; x < out.size(); ++x) {
         const std::uint64_t pixel = firstPixel + x;
-        const double light = shot.rate == nullptr
-                                 ? 0
-                                 : double{shot.rate->row(row)[x]} * shot.gain * double{response[x]};
+        const double light = rate.empty() ? 0 : double{rate[x]} * shot.gain * double{response[x]};
         const double collected =
             std::min(kFullWell, poisson(light + dark[x], uniform(shot.shotKey, pixel)));
-        const double electrons = converter.readAs(collected) +
-                                 kReadNoise * gaussian(shot.readKey, pixel) + shot.columns[x];
+        double electrons = collected + kReadNoise * gaussian(shot.readKey, pixel);
+        if (!faithful) electrons += converter.bow(collected) + shot.columns[x];
         out[x] = converter.digitised(electrons);
     }
 }

@@ -92,7 +92,8 @@ private:
         double gain = 0;      // level times seconds
         double darkTime = 0;  // seconds at 25 degC that give the dark current of the exposure
         std::uint64_t shotKey = 0, readKey = 0;
-        std::vector<double> columns{};  // electrons by which each column of the view is off
+        // Electrons by which each column of the view is off; none where all is read as it is.
+        std::vector<double> columns{};
     };
     [[nodiscard]] std::vector<double> columnErrors(const View& view, std::uint64_t shotKey) const;
     void exposeRow(const Shot& shot, const View& view, int row, std::span<std::uint16_t> out) const;
