@@ -23,13 +23,18 @@ std::uint64_t microseconds(Nanoseconds t) { return static_cast<std::uint64_t>(t.
 
 Device::Device(DeviceConfig config)
     : config_(std::move(config)),
-      camera_(config_.serial, config_.errors, config_.sensorCelsius),
-      drift_(config_.seed, config_.ledDrift),
+      digits_(digitsOf(config_.rig.bits)),
+      camera_(config_.serial,
+              {.references = config_.errors, .rig = config_.rig, .seed = config_.seed}),
+      drift_(config_.seed, config_.rig.ledDrift, config_.rig.ledStep),
       bootId_(static_cast<std::uint32_t>(mixed(config_.seed, config_.bootCount))) {
     raise(event::kBoot, bootId_, 0);
 }
 
-void Device::place(Placement placement) { camera_.place(std::move(placement)); }
+void Device::place(Placement placement) {
+    camera_.place(std::move(placement));
+    sincePlaced_ = Nanoseconds(0);
+}
 
 bool Device::mayLight() const {
     return (interlock_ & interlock::kMayLight) == interlock::kMayLight;
@@ -188,16 +193,22 @@ void Device::finishExposure() {
     }
 }
 
+void Device::runPhotometricClock(const Settings& settings, Nanoseconds time) {
+    drift_.run(settings, time);
+    sincePlaced_ += time;
+}
+
 /// With the output that the LED has halfway through. An exposure that was aborted is not on the
 /// photometric clock: when that happens is the host's doing.
 Image<std::uint16_t> Device::exposed(const Exposing& done, const NoiseKey& key) {
     const Settings& settings = done.settings;
     const Nanoseconds exposure = grantedExposure(settings.exposureUs);
-    drift_.run(settings, done.settling + exposure / 2);
-    const LedBands output =
-        settings.led < 0 ? LedBands::all(1) : drift_.output(settings.led, key.planStep);
-    drift_.run(settings, exposure - exposure / 2);
-    return camera_.expose(settings, output, format_, key);
+    runPhotometricClock(settings, done.settling + exposure / 2);
+    const Moment halfway{
+        .output = settings.led < 0 ? LedBands::all(1) : drift_.output(settings.led, key.planStep),
+        .sincePlaced = sincePlaced_};
+    runPhotometricClock(settings, exposure - exposure / 2);
+    return camera_.expose(settings, halfway, format_, key);
 }
 
 void Device::queueFrame(const Exposing& done, int index) {
@@ -206,14 +217,14 @@ void Device::queueFrame(const Exposing& done, int index) {
                        .frameIndex = static_cast<std::uint64_t>(index)};
     const Image<std::uint16_t> image = exposed(done, key);
     const std::vector<std::uint8_t> bytes = packPixels(image, format_.format);
-    Trailer trailer = trailerOf(done, image, mayLight());
+    Trailer trailer = trailerOf(done, image, digits_, mayLight());
     trailer.frameBytes = static_cast<std::uint32_t>(bytes.size());
     trailer.frameCrc = crc32c(bytes);
     const ChunkHeader header{.bootId = bootId_,
                              .captureId = capture_->id,
                              .frameIndex = static_cast<std::uint16_t>(index),
                              .timeUs = microseconds(now_)};
-    const Leader leader = leaderOf(done, format_, image.size(), temperatures());
+    const Leader leader = leaderOf(done, format_, image.size(), digits_, temperatures());
     frames_.add({.capture = capture_->id,
                  .index = index,
                  .chunks = frameChunks(header, leader, bytes, trailer)});

@@ -20,6 +20,7 @@
 #include "sim/led_drift.h"
 #include "sim/notices.h"
 #include "sim/reference_errors.h"
+#include "sim/rig_errors.h"
 #include "sim/stage.h"
 
 namespace gonio::sim {
@@ -29,9 +30,8 @@ struct DeviceConfig {
     std::uint64_t seed = 1;
     std::uint32_t bootCount = 1;
     ReferenceErrors errors;
-    double sensorCelsius = 25;  ///< dark current doubles each 7 K
     CameraKind camera = CameraKind::Usb2;
-    double ledDrift = 0;  ///< relative standard size, e.g. 0.002; 0: none at all
+    RigErrors rig{};
 };
 
 class Device {
@@ -110,6 +110,7 @@ private:
     void applyDueSettings();
     void finishExposure();
     void queueFrame(const Exposing& exposing, int index);
+    void runPhotometricClock(const Settings& settings, Nanoseconds time);
     [[nodiscard]] Image<std::uint16_t> exposed(const Exposing& done, const NoiseKey& key);
     void abort(std::uint16_t reason);
     void goDark();
@@ -117,8 +118,10 @@ private:
     [[nodiscard]] bool mayLight() const;
 
     DeviceConfig config_;
+    Digits digits_;
     Camera camera_;
     LedDrift drift_;
+    Nanoseconds sincePlaced_{0};  // on the photometric clock
 
     Nanoseconds now_{0};
     std::uint32_t bootId_;

@@ -45,6 +45,7 @@ Ident Device::ident() const {
     v.bootId = bootId_;
     v.sensorWidth = static_cast<std::uint16_t>(kSensorSize.width);
     v.sensorHeight = static_cast<std::uint16_t>(kSensorSize.height);
+    v.bitDepth = static_cast<std::uint8_t>(digits_.bits);
     v.ledCount = kLeds;
     for (std::size_t i = 0; i < kLeds; ++i) {
         v.ledAngle[i] = static_cast<std::int16_t>(std::lround(100 * kLedDegrees[i]));
@@ -67,8 +68,8 @@ Limits Device::limits() const {
     v.roiStep = kRoiStep;
     v.maxFrames = kMaxFrames;
     v.framePeriodUs = static_cast<std::uint32_t>(microseconds(link().framePeriod));
-    v.blackLevel = kBlackLevel;
-    v.fullScale = kFullScale;
+    v.blackLevel = digits_.blackLevel;
+    v.fullScale = digits_.fullScale;
     v.ledFull = kFullCurrent;
     v.ledWhite = whiteBalance();
     v.ledTolerance = 100;
@@ -78,7 +79,7 @@ Limits Device::limits() const {
 }
 
 Temperatures Device::temperatures() const {
-    return {2600, static_cast<std::int16_t>(std::lround(100 * config_.sensorCelsius)), 2500, 2300};
+    return {2600, static_cast<std::int16_t>(std::lround(100 * config_.rig.celsius)), 2500, 2300};
 }
 
 Status Device::status() const {

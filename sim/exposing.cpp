@@ -31,6 +31,7 @@ std::array<std::uint16_t, 3> currents(const std::array<std::uint16_t, 3>& levels
 Leader leaderOf(const Exposing& done,
                 const Format& format,
                 Size sent,
+                const Digits& digits,
                 const Temperatures& temperatures) {
     const Settings& s = done.settings;
     Leader leader;
@@ -47,7 +48,8 @@ Leader leaderOf(const Exposing& done,
     leader.gain = s.gain;
     if (s.led >= 0) leader.ledLevel = s.levels;
     leader.temperature = temperatures;
-    leader.blackLevel = kBlackLevel;
+    leader.bitDepth = static_cast<std::uint8_t>(digits.bits);
+    leader.blackLevel = digits.blackLevel;
     leader.x = static_cast<std::uint16_t>(format.view.x);
     leader.y = static_cast<std::uint16_t>(format.view.y);
     leader.binning = static_cast<std::uint8_t>(format.binning);
@@ -57,7 +59,10 @@ Leader leaderOf(const Exposing& done,
     return leader;
 }
 
-Trailer trailerOf(const Exposing& done, const Image<std::uint16_t>& image, bool seated) {
+Trailer trailerOf(const Exposing& done,
+                  const Image<std::uint16_t>& image,
+                  const Digits& digits,
+                  bool seated) {
     Trailer trailer;
     trailer.exposureEndUs = microseconds(done.end);
     if (done.settings.led >= 0) {
@@ -65,7 +70,7 @@ Trailer trailerOf(const Exposing& done, const Image<std::uint16_t>& image, bool 
     }
     trailer.validity = seated ? validity::kAll : validity::kCurrent | validity::kTemperature;
     trailer.saturatedPixels = static_cast<std::uint32_t>(
-        std::count(image.pixels().begin(), image.pixels().end(), kFullScale));
+        std::count(image.pixels().begin(), image.pixels().end(), digits.fullScale));
     return trailer;
 }
 

@@ -47,10 +47,12 @@ using Temperatures = std::array<std::int16_t, 4>;
 [[nodiscard]] driver::Leader leaderOf(const Exposing& done,
                                       const Format& format,
                                       Size sent,
+                                      const Digits& digits,
                                       const Temperatures& temperatures);
 /// All but the bytes' count and CRC. `seated`: the interlock stayed closed.
 [[nodiscard]] driver::Trailer trailerOf(const Exposing& done,
                                         const Image<std::uint16_t>& image,
+                                        const Digits& digits,
                                         bool seated);
 
 }  // namespace gonio::sim

@@ -45,7 +45,7 @@ LedBands LedDrift::output(int led, std::uint64_t planStep) const {
     for (Band b : kBands) {
         output[b] = 1 + size_ * (wander(led, b, planStep) - kHeatLoss[index(b)] * heat(led, b));
     }
-    return output;
+    return planStep < step_.planStep ? output : output * (1 + step_.size);
 }
 
 }  // namespace gonio::sim

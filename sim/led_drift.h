@@ -13,6 +13,9 @@
 // else: never the wall clock, so that frames do not depend on how fast the host is. An LED cools
 // while others are lit and in dark frames; a pause between captures cools nothing.
 //
+// From a plan step on, all LEDs may give another share of their light at once: a step multiplies
+// the output by 1 + its size.
+//
 // The drive current that the rig measures does not show any of it.
 
 #include <array>
@@ -22,12 +25,14 @@
 #include "proc/core/units.h"
 #include "sim/exposing.h"
 #include "sim/light.h"
+#include "sim/rig_errors.h"
 
 namespace gonio::sim {
 
 class LedDrift {
 public:
-    LedDrift(std::uint64_t seed, double size) : seed_(seed), size_(size) {}
+    LedDrift(std::uint64_t seed, double size, const LedStep& step = {})
+        : seed_(seed), size_(size), step_(step) {}
 
     /// The photometric clock runs for so long with this light.
     void run(const Settings& settings, Nanoseconds time);
@@ -40,6 +45,7 @@ public:
 private:
     std::uint64_t seed_;
     double size_;
+    LedStep step_;
     std::array<LedBands, kLeds> heat_{};
 };
 

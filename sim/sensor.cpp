@@ -9,22 +9,41 @@
 namespace gonio::sim {
 namespace {
 
-constexpr double kFullWell = 10500;      // e-
-constexpr double kReadNoise = 2.4;       // e-
-constexpr double kElectronsPerDn = 2.6;  // e-/DN
-constexpr double kDoublingKelvin = 7;
-constexpr double kNonUniformity = 0.007;
+constexpr double kReadNoise = 2.4;          // e-
 constexpr std::int64_t kOffsetNs = 14'260;  // between the line time and the effective exposure
 constexpr std::int64_t kLineNs = 10LL * kExposureStep;
 
-/// The nearest DN. The black level keeps it positive, so that cutting off rounds.
-std::uint16_t digitised(double electrons) {
-    const double dn = electrons / kElectronsPerDn + kBlackLevel;
-    return static_cast<std::uint16_t>(std::clamp(dn, 0.0, double{kFullScale}) + 0.5);
-}
+/// From collected electrons to a DN. Local to a row: what it holds is then not read again for each
+/// pixel that is written.
+class Converter {
+public:
+    Converter(const Digits& digits, double nonLinearity)
+        : electronsPerDn_(digits.electronsPerDn),
+          blackLevel_(digits.blackLevel),
+          fullScale_(digits.fullScale),
+          bow_(4 * nonLinearity) {}
+
+    /// By how many electrons so many collected ones are read wrong.
+    [[nodiscard]] double bow(double electrons) const {
+        return bow_ * electrons * (1 - electrons / kFullWell);
+    }
+    /// The nearest DN. The black level keeps it positive, so that cutting off rounds.
+    [[nodiscard]] std::uint16_t digitised(double electrons) const {
+        const double dn = electrons / electronsPerDn_ + blackLevel_;
+        return static_cast<std::uint16_t>(std::clamp(dn, 0.0, fullScale_) + 0.5);
+    }
+
+private:
+    double electronsPerDn_;
+    double blackLevel_;
+    double fullScale_;
+    double bow_;
+};
 
 /// PROTOCOL.md 2: the mean of the members, or full scale if any is saturated.
-Image<std::uint16_t> binned(const Image<std::uint16_t>& full, int binning) {
+Image<std::uint16_t> binned(const Image<std::uint16_t>& full,
+                            int binning,
+                            std::uint16_t fullScale) {
     Image<std::uint16_t> mean({full.width() / binning, full.height() / binning});
     for (int y = 0; y < mean.height(); ++y) {
         for (int x = 0; x < mean.width(); ++x) {
@@ -34,12 +53,12 @@ Image<std::uint16_t> binned(const Image<std::uint16_t>& full, int binning) {
                 for (int i = 0; i < binning; ++i) {
                     const int dn = full.at(x * binning + i, y * binning + j);
                     sum += dn;
-                    saturated = saturated || dn >= kFullScale;
+                    saturated = saturated || dn >= fullScale;
                 }
             }
             const int members = binning * binning;
             mean.at(x, y) =
-                saturated ? kFullScale : static_cast<std::uint16_t>((sum + members / 2) / members);
+                saturated ? fullScale : static_cast<std::uint16_t>((sum + members / 2) / members);
         }
     }
     return mean;
@@ -53,7 +72,17 @@ Nanoseconds grantedExposure(std::uint32_t requestedUs) {
     return Nanoseconds(lines * kLineNs + kOffsetNs);
 }
 
-Sensor::Sensor(const std::string& serial, double celsius) : key_(0x70726E75), celsius_(celsius) {
+Digits digitsOf(int bits) {
+    const Digits finest;
+    const int times = 1 << (finest.bits - bits);
+    return {.bits = bits,
+            .blackLevel = static_cast<std::uint16_t>((finest.blackLevel + times / 2) / times),
+            .fullScale = static_cast<std::uint16_t>((finest.fullScale + 1) / times - 1),
+            .electronsPerDn = finest.electronsPerDn * times};
+}
+
+Sensor::Sensor(const std::string& serial, const RigErrors& errors)
+    : key_(0x70726E75), errors_(errors), digits_(digitsOf(errors.bits)) {
     for (char c : serial) key_ = mixed(key_, static_cast<unsigned char>(c));
     hotKey_ = mixed(key_, 0x686F74);
     response_ = Image<float>(kSensorSize);
@@ -69,7 +98,7 @@ Sensor::Sensor(const std::string& serial, double celsius) : key_(0x70726E75), ce
 }
 
 double Sensor::response(std::uint64_t pixel) const {
-    return 1 + kNonUniformity * gaussian(key_, pixel);
+    return 1 + errors_.nonUniformity * gaussian(key_, pixel);
 }
 
 double Sensor::darkCurrent(std::uint64_t pixel) const {
@@ -88,6 +117,16 @@ void Sensor::darkElectrons(double darkTime, std::uint64_t first, std::span<doubl
     }
 }
 
+std::vector<double> Sensor::columnErrors(const View& view, std::uint64_t shotKey) const {
+    if (errors_.columnNoise == 0 && errors_.nonLinearity == 0) return {};
+    std::vector<double> columns(static_cast<std::size_t>(view.size.width));
+    const std::uint64_t key = mixed(shotKey, 3);
+    for (std::size_t x = 0; x < columns.size(); ++x) {
+        columns[x] = errors_.columnNoise * gaussian(key, static_cast<std::uint64_t>(view.x) + x);
+    }
+    return columns;
+}
+
 void Sensor::exposeRow(const Shot& shot,
                        const View& view,
                        int row,
@@ -98,15 +137,17 @@ void Sensor::exposeRow(const Shot& shot,
     const std::uint64_t firstPixel = sensorRow * response_.row(0).size() + left;
     std::vector<double> dark(out.size());
     darkElectrons(shot.darkTime, firstPixel, dark);
+    const auto rate = shot.rate == nullptr ? std::span<const float>() : shot.rate->row(row);
+    const Converter converter(digits_, errors_.nonLinearity);
+    const bool faithful = shot.columns.empty();
     for (std::size_t x = 0; x < out.size(); ++x) {
         const std::uint64_t pixel = firstPixel + x;
-        const double light = shot.rate == nullptr
-                                 ? 0
-                                 : double{shot.rate->row(row)[x]} * shot.gain * double{response[x]};
-        const double electrons =
-            std::min(kFullWell, poisson(light + dark[x], uniform(shot.shotKey, pixel))) +
-            kReadNoise * gaussian(shot.readKey, pixel);
-        out[x] = digitised(electrons);
+        const double light = rate.empty() ? 0 : double{rate[x]} * shot.gain * double{response[x]};
+        const double collected =
+            std::min(kFullWell, poisson(light + dark[x], uniform(shot.shotKey, pixel)));
+        double electrons = collected + kReadNoise * gaussian(shot.readKey, pixel);
+        if (!faithful) electrons += converter.bow(collected) + shot.columns[x];
+        out[x] = converter.digitised(electrons);
     }
 }
 
@@ -118,11 +159,13 @@ Image<std::uint16_t> Sensor::expose(const Image<float>* rate,
                                     int binning) const {
     const double seconds = static_cast<double>(exposure.count()) * 1e-9;
     const std::uint64_t shotKey = mixed(mixed(mixed(key.seed, key.planStep), key.frameIndex), 1);
-    const Shot shot{.rate = rate,
-                    .gain = level * seconds,
-                    .darkTime = std::exp2((celsius_ - 25) / kDoublingKelvin) * seconds,
-                    .shotKey = shotKey,
-                    .readKey = mixed(shotKey, 2)};
+    const Shot shot{
+        .rate = rate,
+        .gain = level * seconds,
+        .darkTime = std::exp2((errors_.celsius - 25) / errors_.doublingKelvin) * seconds,
+        .shotKey = shotKey,
+        .readKey = mixed(shotKey, 2),
+        .columns = columnErrors(view, shotKey)};
     Image<std::uint16_t> full(view.size);
     parallelFor(static_cast<std::size_t>(view.size.height), [&](IndexRange rows) {
         for (std::size_t y = rows.begin; y < rows.end; ++y) {
@@ -130,7 +173,7 @@ Image<std::uint16_t> Sensor::expose(const Image<float>* rate,
             exposeRow(shot, view, row, full.row(row));
         }
     });
-    return binning == 1 ? full : binned(full, binning);
+    return binning == 1 ? full : binned(full, binning, digits_.fullScale);
 }
 
 }  // namespace gonio::sim

@@ -3,6 +3,13 @@
 // level 60 DN, dark current 3 e-/s at 25 degC doubling each 7 K, photo-response non-uniformity 0.7
 // % drawn from the serial. Noise is a pure function of (seed, plan step, frame index, pixel).
 //
+// Its errors (rig_errors.h) change some of this: with fewer bits a DN has as many times the
+// electrons and the black level is as much lower, rounded. A non-linear response reads e electrons
+// as
+//     e + inl F 4 (e / F) (1 - e / F),   F: full well;
+// right at e = 0 and e = F, off by inl F at half, steeper by 4 inl near 0. Column noise adds to all
+// pixels of a column the same electrons, Gaussian, drawn anew for each frame, before binning.
+//
 // Hot pixels, drawn from the serial too: one in 5000 has a dark current of 30 to 3000 e-/s at 25
 // degC, as many in each octave, and doubling each 7 K as the rest.
 
@@ -13,22 +20,35 @@
 
 #include "proc/core/image.h"
 #include "proc/core/units.h"
+#include "sim/rig_errors.h"
 
 namespace gonio::sim {
 
 inline constexpr Size kSensorSize{1280, 1024};
-inline constexpr std::uint16_t kBlackLevel = 60;
-inline constexpr std::uint16_t kFullScale = 4095;
-inline constexpr double kHotShare = 2e-4;     ///< of the pixels
-inline constexpr double kHottestAt25 = 3000;  ///< e-/s
-inline constexpr double kLeastHotAt25 = 30;   ///< e-/s
-inline constexpr double kDarkAt25 = 3;        ///< e-/s, of all other pixels
+inline constexpr std::uint16_t kBlackLevel = 60;   ///< DN at 12 bit
+inline constexpr std::uint16_t kFullScale = 4095;  ///< DN at 12 bit
+inline constexpr double kFullWell = 10500;         ///< e-
+inline constexpr double kHotShare = 2e-4;          ///< of the pixels
+inline constexpr double kHottestAt25 = 3000;       ///< e-/s
+inline constexpr double kLeastHotAt25 = 30;        ///< e-/s
+inline constexpr double kDarkAt25 = 3;             ///< e-/s, of all other pixels
 inline constexpr std::uint32_t kExposureMinUs = 20;
 inline constexpr std::uint32_t kExposureMaxUs = 1'000'000;
 inline constexpr std::uint16_t kExposureStep = 550;  ///< 0.01 us: one line
 
 /// The effective exposure that the sensor gives for a request: whole lines plus a fixed 14.26 us.
 [[nodiscard]] Nanoseconds grantedExposure(std::uint32_t requestedUs);
+
+/// What the digits of a pixel mean.
+struct Digits {
+    int bits = 12;
+    std::uint16_t blackLevel = kBlackLevel;
+    std::uint16_t fullScale = kFullScale;
+    double electronsPerDn = 2.6;
+};
+
+/// `bits`: 8, 10 or 12.
+[[nodiscard]] Digits digitsOf(int bits);
 
 /// The part of the sensor that is read, in sensor pixels.
 struct View {
@@ -45,7 +65,7 @@ struct NoiseKey {
 
 class Sensor {
 public:
-    explicit Sensor(const std::string& serial, double celsius = 25);
+    explicit Sensor(const std::string& serial, const RigErrors& errors = {});
 
     /// One exposure of the view's pixels, whose light is `rate` times `level` in electrons per
     /// second. No rate: dark. Binned as the protocol says.
@@ -56,7 +76,7 @@ public:
                                               const NoiseKey& key,
                                               int binning) const;
 
-    /// Gain of a pixel of the sensor relative to the mean: 1 +- 0.7 %.
+    /// Gain of a pixel of the sensor relative to the mean: 1 +- its non-uniformity.
     [[nodiscard]] double response(std::uint64_t pixel) const;
     /// Dark current of a pixel of the sensor at 25 degC, e-/s.
     [[nodiscard]] double darkCurrent(std::uint64_t pixel) const;
@@ -72,14 +92,18 @@ private:
         double gain = 0;      // level times seconds
         double darkTime = 0;  // seconds at 25 degC that give the dark current of the exposure
         std::uint64_t shotKey = 0, readKey = 0;
+        // Electrons by which each column of the view is off; none where all is read as it is.
+        std::vector<double> columns{};
     };
+    [[nodiscard]] std::vector<double> columnErrors(const View& view, std::uint64_t shotKey) const;
     void exposeRow(const Shot& shot, const View& view, int row, std::span<std::uint16_t> out) const;
     /// Mean dark electrons of the pixels from `first` on.
     void darkElectrons(double darkTime, std::uint64_t first, std::span<double> out) const;
 
     std::uint64_t key_;
     std::uint64_t hotKey_;
-    double celsius_;
+    RigErrors errors_;
+    Digits digits_;
     Image<float> response_;      // of the whole sensor
     std::vector<HotPixel> hot_;  // by pixel
 };

@@ -328,9 +328,15 @@ Result<ApiReply> postPlace(const Call& call) {
     const PlaceRequest place{.what = fields.text("what", true),
                              .tiltXDegrees = fields.number("tilt_x_deg").value_or(0),
                              .tiltYDegrees = fields.number("tilt_y_deg").value_or(0),
+                             .wavinessDegrees = fields.number("waviness_deg").value_or(0),
+                             .translucency = fields.number("translucency").value_or(0),
+                             .backing = fields.optionalText("backing").value_or("black"),
+                             .softness = fields.number("softness").value_or(0),
+                             .ambient = fields.number("ambient").value_or(0),
                              .seed = fields.whole("seed"),
                              .serial = fields.optionalText("serial"),
-                             .systematic = fields.optionalText("systematic")};
+                             .systematic = fields.optionalText("systematic"),
+                             .rigErrors = fields.optionalText("rig_errors")};
     if (Result<void> good = fields.verdict(); !good) return good.error();
     if (Result<void> done = call.engine.place(place); !done) {
         // A file that is not there, or no BRDF: the request's fault, not the store's.
@@ -341,7 +347,12 @@ Result<ApiReply> postPlace(const Call& call) {
                  {{"serial", call.engine.status().serial},
                   {"placed", place.what},
                   {"tilt_x_deg", place.tiltXDegrees},
-                  {"tilt_y_deg", place.tiltYDegrees}});
+                  {"tilt_y_deg", place.tiltYDegrees},
+                  {"waviness_deg", place.wavinessDegrees},
+                  {"translucency", place.translucency},
+                  {"backing", place.backing},
+                  {"softness", place.softness},
+                  {"ambient", place.ambient}});
 }
 
 struct Route {

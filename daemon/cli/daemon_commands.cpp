@@ -241,7 +241,13 @@ Result<void> simPlace(const CommonOptions& common, PlaceRequest place) {
     if (Result<void> good = check(place); !good) return good;
     Json request{{"what", place.what},
                  {"tilt_x_deg", place.tiltXDegrees},
-                 {"tilt_y_deg", place.tiltYDegrees}};
+                 {"tilt_y_deg", place.tiltYDegrees},
+                 {"waviness_deg", place.wavinessDegrees},
+                 {"translucency", place.translucency},
+                 {"backing", place.backing},
+                 {"softness", place.softness},
+                 {"ambient", place.ambient}};
+    if (place.rigErrors) request["rig_errors"] = *place.rigErrors;
     if (place.seed) request["seed"] = *place.seed;
     if (place.serial) request["serial"] = *place.serial;
     if (place.systematic) request["systematic"] = *place.systematic;

@@ -87,8 +87,10 @@ void Program::addSim() {
     sub->add_option(
            "what", place.what, "black, white, mirror, nothing, a file, model:SPEC or sample:NAME")
         ->required();
-    sub->add_option("--tilt-x", place.tiltXDegrees, "wedge of the mirror about x, degrees");
-    sub->add_option("--tilt-y,--tilt", place.tiltYDegrees, "wedge of the mirror about y, degrees");
+    sub->add_option(
+        "--tilt-x", place.tiltXDegrees, "wedge of the mirror or a model: about x, degrees");
+    sub->add_option(
+        "--tilt-y,--tilt", place.tiltYDegrees, "wedge of the mirror or a model: about y, degrees");
     sub->add_option("--seed", place.seed, "seed of the rig's noise, 0 or above (kept)")
         ->check(CLI::NonNegativeNumber);
     sub->add_option(
@@ -96,6 +98,19 @@ void Program::addSim() {
     sub->add_option("--systematic",
                     place.systematic,
                     "errors of the references: none, random, or stratum:K with K in 0..19 (kept)");
+    sub->add_option("--rig-errors",
+                    place.rigErrors,
+                    "what else is wrong with the rig (kept): none, typical, or names with sizes, "
+                    "glare=0.002,offset_us,step=0.05@300; all in docs/simulator.md");
+    sub->add_option("--waviness",
+                    place.wavinessDegrees,
+                    "how far a model:'s normal differs between the LEDs' spots, rms, degrees");
+    sub->add_option("--translucent",
+                    place.translucency,
+                    "share of red light that the sample lets through to its backing and back");
+    sub->add_option("--backing", place.backing, "what lies below it: black or white");
+    sub->add_option("--soft", place.softness, "excess of a pressed sample's lobe, which relaxes");
+    sub->add_option("--ambient", place.ambient, "light that leaks in, as of this f cos(theta)");
 
     sub = command(*sim, "score", "hold measured samples against the simulated rig's truth", [this] {
         return simScore(common, score);

@@ -6,8 +6,8 @@
 
 #include "daemon/cli/commands.h"
 #include "daemon/cli/output.h"
-#include "daemon/material.h"
 #include "daemon/score.h"
+#include "daemon/sim_bench.h"
 #include "proc/core/number_text.h"
 #include "proc/formats/file_bytes.h"
 #include "proc/formats/gonio_exr.h"
@@ -41,10 +41,6 @@ std::vector<std::string> filesOf(const fs::path& gonio) {
     return files;
 }
 
-bool isReference(const std::string& what) {
-    return what == "nothing" || what == "mirror" || what == "white" || what == "black";
-}
-
 /// A measured sample held against its truth.
 struct Scored {
     fs::path file;
@@ -55,14 +51,9 @@ struct Scored {
 Result<Scored> scoreFile(const fs::path& file, const fs::path& store) {
     const Result<proc::SampleSet> sample = proc::readGonio(file);
     if (!sample) return sample.error();
-    if (sample->info.truthSpec.empty() || isReference(sample->info.truthSpec)) {
-        return Error{
-            ErrorKind::Usage,
-            file.string() + ": its truth is not known: it is no sample of a simulated rig"};
-    }
-    const Result<Material> truth = openMaterial(sample->info.truthSpec, store);
-    if (!truth) return truth.error();
-    return Scored{file, sample->info, score(*sample, *truth->scatterer)};
+    const auto truth = truthOf(sample->info, store);
+    if (!truth) return truth.error().in(file.string());
+    return Scored{file, sample->info, score(*sample, **truth)};
 }
 
 /// The document of the quickstart.

@@ -15,8 +15,38 @@ constexpr std::size_t kLongestSerial = 32;
 
 Error refused(const std::string& what) { return {ErrorKind::Usage, "sim place: " + what}; }
 
-bool isReference(const std::string& what) {
-    return what == "nothing" || what == "mirror" || what == "white" || what == "black";
+sim::SampleErrors sampleErrorsOf(const PlaceRequest& request) {
+    return {.waviness = Radians::fromDegrees(request.wavinessDegrees),
+            .translucency = request.translucency,
+            .backing = request.backing == "white" ? sim::Backing::White : sim::Backing::Black,
+            .softness = request.softness,
+            .ambient = request.ambient};
+}
+
+/// What can be wrong with this sample, or what can be done to this reference.
+Result<void> checkErrors(const PlaceRequest& request) {
+    const bool model = request.what.starts_with("model:");
+    for (const double tilt : {request.tiltXDegrees, request.tiltYDegrees}) {
+        if (!(std::abs(tilt) <= kSteepestDegrees)) {
+            return refused("a tilt of " + shortest(tilt) + ", wanted -30 to 30 degrees");
+        }
+        if (tilt != 0 && request.what != "mirror" && !model) {
+            return refused("only the mirror or a model: can be tilted");
+        }
+    }
+    if (request.backing != "black" && request.backing != "white") {
+        return refused("backing '" + request.backing + "': wanted black or white");
+    }
+    if (Result<void> good = sim::check(sampleErrorsOf(request)); !good) {
+        return good.error().in("sim place");
+    }
+    if (request.wavinessDegrees != 0 && !model) return refused("only a model: can be wavy");
+    if ((request.translucency != 0 || request.softness != 0) && isReference(request.what)) {
+        return refused("only a sample can be translucent or soft");
+    }
+    if (!request.rigErrors) return {};
+    const auto rig = sim::parseRigErrors(*request.rigErrors, {});
+    return rig ? Result<void>() : rig.error().in("sim place");
 }
 
 /// What will name the same thing after the store has changed.
@@ -31,12 +61,7 @@ Result<std::string> lastingName(const std::string& what, Store& store) {
 }  // namespace
 
 Result<void> check(const PlaceRequest& request) {
-    for (const double tilt : {request.tiltXDegrees, request.tiltYDegrees}) {
-        if (!(std::abs(tilt) <= kSteepestDegrees)) {
-            return refused("a tilt of " + shortest(tilt) + ", wanted -30 to 30 degrees");
-        }
-        if (tilt != 0 && request.what != "mirror") return refused("only the mirror can be tilted");
-    }
+    if (Result<void> good = checkErrors(request); !good) return good;
     const bool named = isReference(request.what) || request.what.starts_with("model:") ||
                        request.what.starts_with("sample:") || fs::path(request.what).is_absolute();
     if (!named) {
@@ -83,11 +108,7 @@ Result<bool> SimPort::placeMirror(const proc::Wedge& wedge) {
     return true;
 }
 
-void SimPort::describe(proc::SampleInfo& info) const {
-    info.truthSpec = state_.placed;
-    info.extra["seed"] = std::to_string(state_.seed);
-    info.extra["rig"] = "simulated, systematic errors of the references: " + state_.systematic;
-}
+void SimPort::describe(proc::SampleInfo& info) const { daemon::describe(state_, info); }
 
 void SimPort::adopt(SimState state) {
     const std::scoped_lock lock(mutex_);
@@ -100,13 +121,15 @@ Result<bool> SimPort::place(const PlaceRequest& request) {
     if (request.seed) next.seed = *request.seed;
     if (request.serial) next.serial = *request.serial;
     if (request.systematic) next.systematic = *request.systematic;
+    if (request.rigErrors) next.rigErrors = *request.rigErrors;
     Result<std::string> placed = lastingName(request.what, store_);
     if (!placed) return placed.error();
     next.placed = std::move(*placed);
     next.wedge = {.aboutX = Radians::fromDegrees(request.tiltXDegrees),
                   .aboutY = Radians::fromDegrees(request.tiltYDegrees)};
+    next.sampleErrors = sampleErrorsOf(request);
     const bool another = next.seed != state_.seed || next.serial != state_.serial ||
-                         next.systematic != state_.systematic;
+                         next.systematic != state_.systematic || next.rigErrors != state_.rigErrors;
     if (another) {  // opening it now tells at once what is wrong with it
         if (const auto door = openSim(next, store_, cameraUsb_); !door) return door.error();
     }

@@ -17,9 +17,15 @@ struct PlaceRequest {
     std::string what;  ///< black, white, mirror, nothing, an absolute path, model: or sample:
     double tiltXDegrees = 0;  ///< turns the surface about x
     double tiltYDegrees = 0;
+    double wavinessDegrees = 0;  ///< this and the next four: sim/sample_errors.h
+    double translucency = 0;
+    std::string backing = "black";  ///< or white
+    double softness = 0;
+    double ambient = 0;
     std::optional<std::uint64_t> seed{};
     std::optional<std::string> serial{};
     std::optional<std::string> systematic{};  ///< none, random, or stratum:K
+    std::optional<std::string> rigErrors{};   ///< sim/rig_errors.h
 };
 
 /// Usage error for what can never be placed.

@@ -218,5 +218,20 @@ TEST(Device, AResetStreamHoldsNothing) {
     EXPECT_FALSE(device.takeBulk());
 }
 
+TEST(Device, TellsTheBitsOfItsPixelsAndWhatTheyMean) {
+    for (const int bits : {8, 10, 12}) {
+        Device device({.errors = {}, .rig = {.bits = bits}});
+        const auto feature = [&](ReportId id) {
+            return *device.getFeature(static_cast<std::uint8_t>(id));
+        };
+        const auto ident = decodeIdent(feature(ReportId::Ident));
+        const auto limits = decodeLimits(feature(ReportId::Limits));
+        ASSERT_TRUE(ident && limits);
+        EXPECT_EQ(ident->bitDepth, bits);
+        EXPECT_EQ(limits->blackLevel, digitsOf(bits).blackLevel);
+        EXPECT_EQ(limits->fullScale, (1 << bits) - 1);
+    }
+}
+
 }  // namespace
 }  // namespace gonio::sim

@@ -106,5 +106,18 @@ TEST(LedDrift, TheSeedDrawsItAndEachLedAndBandHasItsOwn) {
     EXPECT_NE(one.wander(0, Band::R, 100), one.wander(0, Band::G, 100));
 }
 
+TEST(LedDrift, AStepMultipliesTheOutputFromItsPlanStepOn) {
+    const LedDrift steady(7, kSize);
+    const LedDrift stepped(7, kSize, {.size = -0.05, .planStep = 300});
+    for (int led = 0; led < kLeds; ++led) {
+        for (Band b : kBands) {
+            EXPECT_EQ(stepped.output(led, 299)[b], steady.output(led, 299)[b]);
+            EXPECT_NEAR(stepped.output(led, 300)[b] / steady.output(led, 300)[b], 0.95, 1e-15);
+            EXPECT_NEAR(stepped.output(led, 900)[b] / steady.output(led, 900)[b], 0.95, 1e-15);
+        }
+    }
+    EXPECT_EQ(LedDrift(7, 0, {.size = 0.05, .planStep = 3}).output(0, 3), LedBands::all(1.05));
+}
+
 }  // namespace
 }  // namespace gonio::sim

@@ -88,7 +88,7 @@ TEST(RigOnSim, LimitsTellTheFramePeriodOfTheCamera) {
 
 /// A grey, lit green by LED 1 three times, after a pause; the means of the frames.
 std::vector<double> meansOf(double ledDrift, Nanoseconds pause) {
-    sim::InProcessDoor door({.errors = {}, .ledDrift = ledDrift});
+    sim::InProcessDoor door({.errors = {}, .rig = {.ledDrift = ledDrift}});
     door.device().place(lambert());
     auto rig = driver::Rig::open(door, kSession);
     EXPECT_TRUE(rig);
@@ -386,6 +386,86 @@ TEST(RigOnSim, BinnedWindowIsFourTimesSmaller) {
                                       .frames = 2});
     ASSERT_TRUE(frames) << frames.error().message;
     EXPECT_EQ(frames->front().pixels.size(), (Size{512, 512}));
+}
+
+/// Two frames of a small window, of a rig with so many bits, in this format on the wire.
+std::vector<Frame> framesIn(int bits, driver::PixelFormat format) {
+    sim::InProcessDoor door({.errors = {}, .rig = {.bits = bits}});
+    door.device().place(lambert());
+    auto rig = driver::Rig::open(door, kSession);
+    if (!rig) return {};
+    EXPECT_TRUE(rig->configure({.x = 600, .y = 500, .size = {64, 32}, .binning = 1}, format));
+    const auto frames = rig->capture({.planStep = 1,
+                                      .led = 0,
+                                      .levels = LedLevels::only(Band::G, 65535),
+                                      .exposure = Microseconds(320),
+                                      .frames = 2});
+    EXPECT_TRUE(frames) << frames.error().message;
+    if (!frames) return {};
+    return {frames->begin(), frames->end()};
+}
+
+TEST(RigOnSim, EightTenAndTwelveBitsComeInBothFormats) {
+    for (const int bits : {8, 10, 12}) {
+        const auto packed = framesIn(bits, driver::PixelFormat::Mono12Packed);
+        const auto wide = framesIn(bits, driver::PixelFormat::Mono16);
+        ASSERT_EQ(packed.size(), 2U);
+        ASSERT_EQ(wide.size(), 2U);
+        for (std::size_t i = 0; i < 2; ++i) {
+            EXPECT_EQ(packed[i].pixels, wide[i].pixels) << bits;
+            EXPECT_EQ(packed[i].blackLevel, sim::digitsOf(bits).blackLevel);
+        }
+        EXPECT_NE(packed[0].pixels, packed[1].pixels);
+    }
+}
+
+/// Mean DN above black of frames taken one after another, each at its plan step.
+double meanDn(driver::Rig& rig, std::uint64_t planStep) {
+    const auto frames = rig.capture({.planStep = planStep,
+                                     .led = 0,
+                                     .levels = LedLevels::only(Band::G, 65535),
+                                     .exposure = Microseconds(320),
+                                     .frames = 1});
+    EXPECT_TRUE(frames) << frames.error().message;
+    double sum = 0;
+    for (std::uint16_t dn : frames->front().pixels.pixels()) sum += dn - sim::kBlackLevel;
+    return sum / static_cast<double>(frames->front().pixels.pixels().size());
+}
+
+TEST(RigOnSim, LedsStepBetweenTwoPlanSteps) {
+    sim::InProcessDoor door({.errors = {}, .rig = {.ledStep = {.size = 0.05, .planStep = 4}}});
+    door.device().place(lambert());
+    auto rig = driver::Rig::open(door, kSession);
+    ASSERT_TRUE(rig);
+    ASSERT_TRUE(rig->configure({.x = 560, .y = 432, .size = {160, 160}, .binning = 1}));
+    const double before = meanDn(*rig, 2);
+    // 25,600 pixels with some 2000 electrons: 1.4e-4.
+    EXPECT_NEAR(meanDn(*rig, 3) / before, 1, 1e-3);
+    EXPECT_NEAR(meanDn(*rig, 4) / before, 1.05, 1e-3);
+    EXPECT_NEAR(meanDn(*rig, 5) / before, 1.05, 1e-3);
+}
+
+TEST(RigOnSim, ASoftSampleRelaxesWithThePhotometricClockAndStartsAnewWhenPlaced) {
+    sim::InProcessDoor door({.errors = {}});
+    sim::Placement soft = lambert();
+    soft.errors.softness = 0.2;
+    door.device().place(soft);
+    auto rig = driver::Rig::open(door, kSession);
+    ASSERT_TRUE(rig);
+    ASSERT_TRUE(rig->configure({.x = 560, .y = 432, .size = {160, 160}, .binning = 1}));
+    const double pressed = meanDn(*rig, 1);
+    const auto dark = [&](std::uint64_t planStep) {
+        return rig->capture(
+            {.planStep = planStep, .exposure = Microseconds(1'000'000), .frames = 8});
+    };
+    ASSERT_TRUE(dark(2));
+    const double relaxed = meanDn(*rig, 3);
+    // The window is 24.2 degrees wide. Along each axis the mean of exp(-(x / 10)^2 / 2) over +-12.1
+    // is 0.80; the lens is centred to 1 degree.
+    EXPECT_NEAR(pressed / relaxed, 1 + 0.2 * 0.80 * 0.80, 0.005);
+    door.device().advanceTo(door.device().now() + std::chrono::milliseconds(50));
+    door.device().place(soft);
+    EXPECT_NEAR(meanDn(*rig, 4) / pressed, 1, 2e-3);
 }
 
 }  // namespace

@@ -88,7 +88,7 @@ TEST(Sensor, ResponsesScatterBySevenTenthsOfAPerCent) {
 /// Mean DN above the black level of a dark exposure, over the hot pixels or over the others.
 double darkDn(double celsius, Nanoseconds exposure, bool hot) {
     constexpr View kPart{.size = {256, 256}};
-    const Sensor sensor("SIM-0001", celsius);
+    const Sensor sensor("SIM-0001", {.celsius = celsius});
     const auto frame = sensor.expose(nullptr, 0, exposure, kPart, {1, 1, 0}, 1);
     double sum = 0;
     double count = 0;
@@ -120,6 +120,28 @@ TEST(Sensor, HotPixelsDoubleEachSevenKelvinToo) {
     EXPECT_NEAR(darkDn(18, kExposure, true) / at25, 0.5, 0.05);
 }
 
+TEST(Sensor, DoublesAsItsErrorsSayUpToEightyDegrees) {
+    // 3 e-/s at 25 degC; 55 K later, at 40 ms, 0.04 x 3 x 2^(55 / k) electrons: 69, 28 and 14.
+    const auto darkAt80 = [](double doublingKelvin) {
+        const Sensor sensor("SIM-0001", {.celsius = 80, .doublingKelvin = doublingKelvin});
+        const auto frame =
+            sensor.expose(nullptr, 0, Nanoseconds(40'000'000), {.size = kSmall}, {1, 1, 0}, 1);
+        std::vector<std::uint16_t> dn(frame.pixels().begin(), frame.pixels().end());
+        std::nth_element(dn.begin(), dn.begin() + 80'000, dn.end());
+        return 2.6 * (dn[80'000] - kBlackLevel);  // the median: hot pixels left out
+    };
+    for (const double k : {6.0, 7.0, 8.0}) {
+        EXPECT_NEAR(darkAt80(k), 0.12 * std::exp2(55 / k), 2.6) << k;  // one DN
+    }
+}
+
+TEST(Sensor, AtEightyDegreesEveryPixelStillIsANumberWithinItsScale) {
+    const Sensor sensor("SIM-0001", {.celsius = 80, .doublingKelvin = 6});
+    const auto frame =
+        sensor.expose(nullptr, 0, Nanoseconds(1'000'000'000), {.size = {64, 64}}, {1, 1, 0}, 1);
+    for (std::uint16_t dn : frame.pixels()) EXPECT_LE(dn, kFullScale);
+}
+
 std::vector<double> hotOf(const Sensor& sensor) {
     std::vector<double> hot;
     const auto pixels = static_cast<std::uint64_t>(kSensorSize.pixels());
@@ -145,7 +167,7 @@ TEST(Sensor, OnePixelInFiveThousandIsHotAsManyInEachOctave) {
 }
 
 TEST(Sensor, HotPixelsAreThoseOfTheSerialNumber) {
-    EXPECT_EQ(hotOf(Sensor("SIM-0001")), hotOf(Sensor("SIM-0001", 60)));
+    EXPECT_EQ(hotOf(Sensor("SIM-0001")), hotOf(Sensor("SIM-0001", {.celsius = 60})));
     EXPECT_NE(hotOf(Sensor("SIM-0001")), hotOf(Sensor("SIM-0002")));
 }
 
@@ -180,6 +202,110 @@ TEST(Sensor, PixelsKeepTheirResponseInEveryView) {
         for (int x = 0; x < kPart.size.width; ++x) {
             ASSERT_EQ(part.at(x, y), whole.at(kPart.x + x, kPart.y + y)) << x << ' ' << y;
         }
+    }
+}
+
+TEST(Sensor, ColumnNoiseHasItsSigmaAndIsAnotherInEachFrame) {
+    // The mean of a dark column of 1024 pixels has 2.4 / 32 e- of read noise and as good as no
+    // rounding left: sigma of 1280 columns is known to 2 %.
+    const Sensor quiet("SIM-0001");
+    const Sensor noisy("SIM-0001", {.columnNoise = 1.5});
+    const auto columns = [&](const Sensor& sensor, std::uint64_t frameIndex) {
+        const auto frame =
+            sensor.expose(nullptr, 0, Nanoseconds(20'000), {}, {1, 1, frameIndex}, 1);
+        std::vector<double> means(static_cast<std::size_t>(frame.width()));
+        for (int y = 0; y < frame.height(); ++y) {
+            for (int x = 0; x < frame.width(); ++x) {
+                means[static_cast<std::size_t>(x)] +=
+                    2.6 * (frame.at(x, y) - kBlackLevel) / frame.height();
+            }
+        }
+        return means;
+    };
+    const auto product = [](const std::vector<double>& a, const std::vector<double>& b) {
+        double sum = 0;
+        for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+        return sum / static_cast<double>(a.size());
+    };
+    const auto first = columns(noisy, 0);
+    EXPECT_NEAR(std::sqrt(product(first, first)), 1.5, 0.1);
+    EXPECT_NEAR(product(first, columns(noisy, 1)), 0, 4 * 1.5 * 1.5 / std::sqrt(1280));
+    EXPECT_LT(std::sqrt(product(columns(quiet, 0), columns(quiet, 0))), 0.1);
+    EXPECT_EQ(columns(noisy, 0), first);
+}
+
+TEST(Sensor, AColumnIsOffByTheSameInEveryView) {
+    const Sensor noisy("SIM-0001", {.columnNoise = 5});
+    constexpr View kPart{.x = 640, .y = 512, .size = {64, 32}};
+    const auto whole = noisy.expose(nullptr, 0, Nanoseconds(20'000), {}, {1, 1, 0}, 1);
+    const auto part = noisy.expose(nullptr, 0, Nanoseconds(20'000), kPart, {1, 1, 0}, 1);
+    for (int x = 0; x < 64; ++x) EXPECT_EQ(part.at(x, 9), whole.at(640 + x, 521));
+}
+
+/// Mean electrons read of a pixel that collects so many.
+double readOf(const RigErrors& errors, double collected) {
+    const Sensor sensor("SIM-0001", errors);
+    const Image<float> rate(kSmall, static_cast<float>(collected * 1e3));
+    const auto frame =
+        sensor.expose(&rate, 1, Nanoseconds(1'000'000), {.size = kSmall}, {1, 1, 0}, 1);
+    double sum = 0;
+    for (std::uint16_t dn : frame.pixels()) sum += dn - kBlackLevel;
+    return 2.6 * sum / static_cast<double>(frame.pixels().size());
+}
+
+TEST(Sensor, ItsResponseBowsByTheNonLinearityAtHalfOfFullWell) {
+    // The same uniforms with and without: the difference has next to no noise. What non-uniformity
+    // and shot noise do to a parabola: 4 inl / F (c + (0.007 c)^2), below 0.02 e-.
+    const RigErrors bent{.nonLinearity = 0.003};
+    const auto added = [&](double collected) {
+        return readOf(bent, collected) - readOf({}, collected);
+    };
+    EXPECT_NEAR(added(0), 0, 0.02);
+    EXPECT_NEAR(added(kFullWell / 2), 0.003 * kFullWell, 0.2);
+    EXPECT_NEAR(added(kFullWell / 10), 0.003 * kFullWell * 4 * 0.1 * 0.9, 0.1);
+    // Near zero it is steeper by 4 inl.
+    EXPECT_NEAR(added(100), 0.012 * 100 * (1 - 100 / kFullWell), 0.05);
+    EXPECT_NEAR(readOf({.nonLinearity = -0.003}, kFullWell / 2) - readOf({}, kFullWell / 2),
+                -0.003 * kFullWell,
+                0.2);
+}
+
+TEST(Sensor, NonUniformityHasItsSize) {
+    const Sensor even("SIM-0001", {.nonUniformity = 0});
+    const Sensor rough("SIM-0001", {.nonUniformity = 0.02});
+    const Sensor usual("SIM-0001");
+    for (std::uint64_t i = 0; i < 100; ++i) {
+        EXPECT_EQ(even.response(i), 1);
+        EXPECT_NEAR((rough.response(i) - 1) / (usual.response(i) - 1), 0.02 / 0.007, 1e-9);
+    }
+}
+
+TEST(Sensor, FewerBitsMakeCoarserDigits) {
+    const Digits twelve = digitsOf(12);
+    EXPECT_EQ(twelve.blackLevel, kBlackLevel);
+    EXPECT_EQ(twelve.fullScale, kFullScale);
+    EXPECT_EQ(twelve.electronsPerDn, 2.6);
+    EXPECT_EQ(digitsOf(10).blackLevel, 15);
+    EXPECT_EQ(digitsOf(10).fullScale, 1023);
+    EXPECT_EQ(digitsOf(8).blackLevel, 4);
+    EXPECT_EQ(digitsOf(8).fullScale, 255);
+    for (const int bits : {8, 10, 12}) {
+        const Digits digits = digitsOf(bits);
+        const Sensor sensor("SIM-0001", {.bits = bits});
+        const auto mean = [&](float rate) {
+            const Image<float> light(kSmall, rate);
+            const auto frame =
+                sensor.expose(&light, 1, Nanoseconds(1'000'000), {.size = kSmall}, {1, 1, 0}, 1);
+            double sum = 0;
+            for (std::uint16_t dn : frame.pixels()) sum += dn - digits.blackLevel;
+            return digits.electronsPerDn * sum / static_cast<double>(frame.pixels().size());
+        };
+        // 5000 e- to 0.2 e- by noise; by PRNU to 0.1 e-.
+        EXPECT_NEAR(mean(5e6F), 5000, 1) << bits;
+        const Image<float> glaring({8, 8}, 1e9F);
+        const auto full =
+            sensor.expose(&glaring, 1, Nanoseconds(1'000'000), {.size = {8, 8}}, {1, 1, 0}, 2);
+        for (std::uint16_t dn : full.pixels()) EXPECT_GE(dn, digits.fullScale - 2) << bits;
     }
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -35,7 +36,7 @@ Placement even(Role role, LedBands f) {
 }
 
 RateImages ratesOf(const Placement& placement, int led, const ReferenceErrors& errors = {}) {
-    return rateImages(placement, errors, optics(), patch(), led);
+    return ledLight(placement, {.references = errors}, optics(), patch(), led).steady;
 }
 
 double at(const RateImages& rates, Band band, int x, int y) {
@@ -100,7 +101,7 @@ TEST(Stage, NothingAndWhatDoesNotAnswerLeaveTheStrayLight) {
 TEST(Stage, OutsideTheFieldStopThereIsNoLight) {
     const FieldOfView corner(optics(), {.x = 0, .y = 0, .size = {16, 16}});
     const RateImages rates =
-        rateImages(even(Role::Sample, LedBands::all(1)), {}, optics(), corner, 0);
+        ledLight(even(Role::Sample, LedBands::all(1)), {}, optics(), corner, 0).steady;
     for (const Image<float>& band : rates) {
         for (float rate : band.pixels()) EXPECT_EQ(rate, 0);
     }
@@ -130,8 +131,8 @@ TEST(Stage, AMirrorShowsTheLedAsADiscOfHalfADegree) {
     for (int led : {0, 2}) {
         const Placement mirror{.role = Role::Mirror, .surface = nullptr, .wedge = {0_deg, 3_deg}};
         const Direction image = mirrored(ledDirection(led), mirror.wedge);
-        const RateImages bright = rateImages(mirror, {}, optics(), whole, led);
-        const RateImages dark = rateImages({}, {}, optics(), whole, led);
+        const RateImages bright = ledLight(mirror, {}, optics(), whole, led).steady;
+        const RateImages dark = ledLight({}, {}, optics(), whole, led).steady;
         double power = 0;
         for (int y = 0; y < 1024; ++y) {
             for (int x = 0; x < 1024; ++x) {
@@ -154,13 +155,39 @@ TEST(Stage, AMirrorShowsTheLedAsADiscOfHalfADegree) {
     }
 }
 
-TEST(Stage, AMirrorsWedgeTurnsTheImageByTwiceItsAngle) {
-    const Direction light = ledDirection(3);
-    EXPECT_NEAR(angleBetween({mirrored(light, {}), mirrorOf(light)}).value(), 0, 1e-15);
-    const Direction toward = mirrored(light, {0_deg, 7_deg});
-    EXPECT_NEAR(toward.theta().degrees(), 46, 1e-12);
-    EXPECT_NEAR(toward.phi().degrees(), 180, 1e-12);
-    EXPECT_NEAR(mirrored(Direction(), {7_deg, 0_deg}).phi().degrees(), 270, 1e-12);
+TEST(Stage, AMirrorShowsAWideSourceAsItsDisc) {
+    // Twice the diameter: the same light on four times the solid angle.
+    const Placement mirror{.role = Role::Mirror, .surface = nullptr, .wedge = {}};
+    const auto peak = [&](Radians diameter) {
+        const LedLight light =
+            ledLight(mirror, {.rig = {.sourceDiameter = diameter}}, optics(), patch(), 0);
+        const auto pixels = light.steady[1].pixels();
+        return static_cast<double>(*std::max_element(pixels.begin(), pixels.end()));
+    };
+    EXPECT_NEAR(peak(1_deg), peak(0_deg), 1e-6 * peak(0_deg));
+    EXPECT_NEAR(peak(1_deg) / peak(2_deg), 4, 0.01);
+}
+
+TEST(Stage, OnlyASoftSampleHasALobeThatFades) {
+    EXPECT_TRUE(
+        ledLight(even(Role::Sample, LedBands::all(0.3)), {}, optics(), patch(), 1).lobe[0].empty());
+    Placement soft = even(Role::Sample, LedBands::all(0.3));
+    soft.errors.softness = 0.05;
+    const LedLight light = ledLight(soft, {}, optics(), patch(), 0);
+    forEachPixel([&](int x, int y, const Direction& wo) {
+        const double wanted = ledRate(0, Band::G) * lensAt(wo) * 0.3 * wo.z() *
+                              lobeShape(angleBetween({Direction(), wo}));
+        EXPECT_NEAR(at(light.lobe, Band::G, x, y) / wanted, 1, 1.5e-7);
+    });
+    EXPECT_EQ(light.steady, ratesOf(even(Role::Sample, LedBands::all(0.3)), 0));
+}
+
+TEST(Stage, AmbientLightIsThatOfAnFOfItsSize) {
+    const Image<float> leak = ambientLight({.ambient = 0.002}, patch());
+    forEachPixel([&](int x, int y, const Direction& wo) {
+        const double wanted = 0.002 * ledRate(0, Band::G) * lensAt(wo) * (1 + wo.y() / 2);
+        EXPECT_NEAR(static_cast<double>(leak.at(x, y)) / wanted, 1, 1.5e-7);
+    });
 }
 
 }  // namespace

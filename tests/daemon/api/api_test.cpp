@@ -237,7 +237,23 @@ TEST_F(ApiOnSim, PlacedSurfaceIsSaid) {
     EXPECT_EQ(placed["placed"], "mirror");
     EXPECT_EQ(placed["tilt_x_deg"], 5);
     EXPECT_EQ(placed["tilt_y_deg"], -2.5);
+    EXPECT_EQ(placed["backing"], "black");
     EXPECT_EQ(documentOf(get("status"), "status")["rig"]["placed"], "mirror");
+    const Json wrong = documentOf(
+        post(
+            "sim/place",
+            R"({"what":"model:lambert,albedo=0.5","waviness_deg":0.5,"translucency":0.1,"backing":"white",)"
+            R"("softness":0.05,"ambient":0.001,"rig_errors":"typical"})"),
+        "sim-place");
+    EXPECT_EQ(wrong["waviness_deg"], 0.5);
+    EXPECT_EQ(wrong["translucency"], 0.1);
+    EXPECT_EQ(wrong["backing"], "white");
+    EXPECT_EQ(wrong["softness"], 0.05);
+    EXPECT_EQ(wrong["ambient"], 0.001);
+    expectProblem(post("sim/place", R"({"what":"white","rig_errors":"blur"})"),
+                  400,
+                  ErrorKind::Usage,
+                  {"'blur'", "glare"});
     expectProblem(post("sim/place", R"({"what":"model:lambret"})"), 400, ErrorKind::Usage);
     expectProblem(post("sim/place", R"({"what":"/none.bsdf"})"), 422, ErrorKind::File, {"/none"});
     expectProblem(post("sim/place", R"({"what":"none.bsdf"})"), 400, ErrorKind::Usage);

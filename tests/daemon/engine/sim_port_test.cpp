@@ -38,14 +38,37 @@ TEST(PlaceRequest, NamesAReferenceAModelASampleOrAWholePath) {
     }
 }
 
-TEST(PlaceRequest, OnlyTheMirrorIsTiltedUpTo30Degrees) {
+TEST(PlaceRequest, OnlyTheMirrorAndModelsAreTiltedUpTo30Degrees) {
     EXPECT_TRUE(check(PlaceRequest{.what = "mirror", .tiltXDegrees = 30, .tiltYDegrees = -30}));
+    EXPECT_TRUE(check(PlaceRequest{.what = "model:lambert", .tiltXDegrees = 1}));
     EXPECT_FALSE(check(PlaceRequest{.what = "white", .tiltXDegrees = 1}));
+    EXPECT_FALSE(check(PlaceRequest{.what = "/a.bsdf", .tiltYDegrees = 1}));
     EXPECT_TRUE(check(PlaceRequest{.what = "white", .tiltXDegrees = -0.0}));
     for (const double tilt : {std::nextafter(30.0, 31.0),
                               std::numeric_limits<double>::infinity(),
                               std::numeric_limits<double>::quiet_NaN()}) {
         EXPECT_EQ(refusal({.what = "mirror", .tiltYDegrees = tilt}), ErrorKind::Usage) << tilt;
+    }
+}
+
+TEST(PlaceRequest, WhatIsWrongWithASampleIsOfASampleAndWithinItsDomain) {
+    EXPECT_TRUE(check(PlaceRequest{.what = "model:x",
+                                   .wavinessDegrees = 10,
+                                   .translucency = 1,
+                                   .backing = "white",
+                                   .softness = 1,
+                                   .ambient = 1}));
+    EXPECT_TRUE(check(PlaceRequest{.what = "/a", .translucency = 0.1, .softness = 0.1}));
+    EXPECT_TRUE(check(PlaceRequest{.what = "nothing", .ambient = 0.1}));
+    for (const PlaceRequest& request : {PlaceRequest{.what = "/a", .wavinessDegrees = 1},
+                                        PlaceRequest{.what = "model:x", .wavinessDegrees = 11},
+                                        PlaceRequest{.what = "white", .translucency = 0.1},
+                                        PlaceRequest{.what = "mirror", .softness = 0.1},
+                                        PlaceRequest{.what = "model:x", .translucency = -0.1},
+                                        PlaceRequest{.what = "model:x", .backing = "grey"},
+                                        PlaceRequest{.what = "model:x", .ambient = 2},
+                                        PlaceRequest{.what = "model:x", .rigErrors = "blur"}}) {
+        EXPECT_EQ(refusal(request), ErrorKind::Usage);
     }
 }
 
@@ -95,6 +118,83 @@ TEST_F(SimPortInStore, WhatLiesUnderItIsStillThereAfterARestart) {
     port->describe(info);
     EXPECT_EQ(info.truthSpec, "mirror");
     EXPECT_EQ(info.extra.at("seed"), "7");
+}
+
+TEST_F(SimPortInStore, WhatIsWrongIsStillWrongAfterARestartAndAMeasurementSaysSo) {
+    {
+        const auto port = opened();
+        const auto another = port->place({.what = "model:lambert,albedo=0.5",
+                                          .tiltYDegrees = -2,
+                                          .wavinessDegrees = 1.5,
+                                          .translucency = 0.1,
+                                          .backing = "white",
+                                          .softness = 0.05,
+                                          .ambient = 0.001,
+                                          .rigErrors = "glare,crosstalk=0.02"});
+        ASSERT_TRUE(another) << another.error().message;
+        EXPECT_TRUE(*another) << "a rig with other errors is another rig";
+    }
+    proc::SampleInfo info;
+    opened()->describe(info);
+    EXPECT_EQ(info.extra.at("rig_errors"), "glare,crosstalk=0.02");
+    EXPECT_EQ(info.extra.at("sample_errors"),
+              "tilt_y_deg=-2,waviness_deg=1.5,translucency=0.1,backing=white,softness=0.05,"
+              "ambient=0.001");
+    // The next sample has nothing wrong; the rig's errors are kept.
+    const auto port = opened();
+    ASSERT_TRUE(port->place({.what = "model:lambert,albedo=0.5"}));
+    proc::SampleInfo next;
+    port->describe(next);
+    EXPECT_FALSE(next.extra.contains("sample_errors"));
+    EXPECT_EQ(next.extra.at("rig_errors"), "glare,crosstalk=0.02");
+    ASSERT_TRUE(port->place({.what = "white", .rigErrors = "none"}));
+    proc::SampleInfo none;
+    port->describe(none);
+    EXPECT_EQ(none.extra.size(), 2U) << "seed and rig, as ever";
+}
+
+TEST_F(SimPortInStore, AStateOfBeforeThereWereErrorsHasNone) {
+    std::ofstream(folder / "sim.json")
+        << R"({"schema":"gonio/sim/1","serial":"S","seed":3,"systematic":"none","placed":"white",)"
+           R"("tilt_x_deg":0,"tilt_y_deg":0})";
+    proc::SampleInfo info;
+    opened()->describe(info);
+    EXPECT_EQ(info.extra.size(), 2U);
+    EXPECT_EQ(info.extra.at("seed"), "3");
+}
+
+TEST(SimTruth, IsTheMixtureThatCrosstalkMakesAndNothingElseChangesIt) {
+    const LightView pair{Direction::fromSpherical(20_deg, 0_deg), Direction()};
+    const auto truth = [&](SimState state) {
+        state.placed = "model:lambert,albedo=0.9/0.3/0.1";
+        proc::SampleInfo info;
+        describe(state, info);
+        const auto surface = truthOf(info, {});
+        EXPECT_TRUE(surface) << surface.error().message;
+        return (*surface)->answer(pair).f;
+    };
+    const LedBands pure = truth({});
+    EXPECT_NEAR(pure[Band::R] * kPi, 0.9, 1e-12);
+    EXPECT_EQ(truth({.wedge = {1_deg, 2_deg},
+                     .rigErrors = "glare=0.01,inl,offset_us=14,source_deg",
+                     .sampleErrors = {.waviness = 1_deg,
+                                      .translucency = 0.2,
+                                      .backing = sim::Backing::White,
+                                      .softness = 0.1,
+                                      .ambient = 0.1}}),
+              pure);
+    const LedBands mixed = truth({.rigErrors = "typical,crosstalk=0.1"});
+    EXPECT_NEAR(mixed[Band::R] * kPi, 0.9 - 0.1 * 0.6, 1e-12);
+    EXPECT_NEAR(mixed[Band::G] * kPi, 0.3 + 0.1 * (0.5 - 0.3), 1e-12);
+    EXPECT_NEAR(mixed[Band::B] * kPi, 0.1 + 0.1 * 0.2, 1e-12);
+}
+
+TEST(SimTruth, OfAReferenceOrARealRigIsNotKnown) {
+    for (const char* placed : {"", "white", "black", "mirror", "nothing"}) {
+        const auto truth = truthOf({.truthSpec = placed}, {});
+        ASSERT_FALSE(truth) << placed;
+        EXPECT_EQ(truth.error().kind, ErrorKind::Usage);
+    }
 }
 
 TEST_F(SimPortInStore, AnotherSurfaceIsNotAnotherRig) {
@@ -150,7 +250,14 @@ TEST_F(SimPortInStore, BrokenStateIsRefusedAndNamed) {
         const auto port = opened();
         ASSERT_TRUE(port->place({.what = "white"}));
     }
-    for (const char* text : {"", "[]", "{\"schema\":\"gonio/sim/2\"}", "\xFF"}) {
+    const std::string kept = R"({"schema":"gonio/sim/1","serial":"S","seed":3,"placed":"white",)"
+                             R"("systematic":"none","tilt_x_deg":0,"tilt_y_deg":0,)";
+    for (const std::string& text : {std::string(),
+                                    std::string("[]"),
+                                    std::string("{\"schema\":\"gonio/sim/2\"}"),
+                                    std::string("\xFF"),
+                                    kept + R"("softness":2})",
+                                    kept + R"("rig_errors":7})"}) {
         std::ofstream(folder / "sim.json") << text;
         const auto port = SimPort::open(folder.path());
         ASSERT_FALSE(port) << text;

@@ -1,0 +1,61 @@
+#include "sim/pose.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace gonio::sim {
+namespace {
+
+TEST(Pose, AMirrorsWedgeTurnsTheImageByTwiceItsAngle) {
+    const Direction light = ledDirection(3);
+    EXPECT_NEAR(angleBetween({mirrored(light, {}), mirrorOf(light)}).value(), 0, 1e-15);
+    const Direction toward = mirrored(light, {0_deg, 7_deg});
+    EXPECT_NEAR(toward.theta().degrees(), 46, 1e-12);
+    EXPECT_NEAR(toward.phi().degrees(), 180, 1e-12);
+    EXPECT_NEAR(mirrored(Direction(), {7_deg, 0_deg}).phi().degrees(), 270, 1e-12);
+}
+
+TEST(Pose, FlatGivesTheVerySameDirections) {
+    const Direction d = Direction::fromSpherical(33_deg, 100_deg);
+    EXPECT_EQ(Pose().seenFromSurface(d).vector(), d.vector());
+    EXPECT_EQ(Pose({}, {}).seenFromSurface(d).vector(), d.vector());
+}
+
+TEST(Pose, TheSurfaceSeesAMirroredPairInItsOwnMirrorDirection) {
+    for (const Wedge& wedge : {Wedge{2_deg, 0_deg}, Wedge{0_deg, -3_deg}, Wedge{1_deg, 4_deg}}) {
+        const Pose pose(wedge, {});
+        for (int led = 0; led < kLeds; ++led) {
+            const Direction in = pose.seenFromSurface(ledDirection(led));
+            const Direction out = pose.seenFromSurface(mirrored(ledDirection(led), wedge));
+            EXPECT_NEAR(angleBetween({mirrorOf(in), out}).value(), 0, 1e-14) << led;
+        }
+    }
+}
+
+TEST(Pose, ASpotsWedgeAddsToTheSurfaces) {
+    // About one axis angles add up exactly.
+    const Pose both({0_deg, 2_deg}, {0_deg, 3_deg});
+    const Pose one({0_deg, 5_deg}, {});
+    const Direction d = Direction::fromSpherical(40_deg, 70_deg);
+    EXPECT_NEAR(angleBetween({both.seenFromSurface(d), one.seenFromSurface(d)}).value(), 0, 1e-15);
+}
+
+TEST(Pose, WavesHaveMeanZeroAndTheirSizeAsRootMeanSquare) {
+    for (std::uint64_t seed = 1; seed < 20; ++seed) {
+        double x = 0, y = 0, squares = 0;
+        for (const Wedge& spot : waves(seed, 2_deg)) {
+            x += spot.aboutX.degrees();
+            y += spot.aboutY.degrees();
+            squares += std::pow(spot.aboutX.degrees(), 2) + std::pow(spot.aboutY.degrees(), 2);
+        }
+        EXPECT_NEAR(x, 0, 1e-12);
+        EXPECT_NEAR(y, 0, 1e-12);
+        EXPECT_NEAR(std::sqrt(squares / kLeds), 2, 1e-12);
+    }
+    EXPECT_NE(waves(1, 2_deg)[0].aboutX, waves(2, 2_deg)[0].aboutX);
+    for (const Wedge& spot : waves(1, 0_deg)) EXPECT_TRUE(spot.flat());
+}
+
+}  // namespace
+}  // namespace gonio::sim
