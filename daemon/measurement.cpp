@@ -8,6 +8,7 @@
 
 #include "daemon/alongside.h"
 #include "daemon/gathering.h"
+#include "daemon/sample_pose.h"
 #include "proc/core/median.h"
 #include "proc/core/number_text.h"
 #include "proc/optics/spot.h"
@@ -133,6 +134,53 @@ Measured thenDark(driver::Rig& rig, Measured measured) {
     return measured;
 }
 
+/// The median over the cells present, relative, k = 1; empty: there are none.
+std::optional<double> achieved(const proc::SampleSet& set) {
+    std::vector<double> relative;
+    for (const proc::LedTable& led : set.leds) {
+        for (const proc::CellSamples& cells : led.bands) {
+            for (std::size_t cell = 0; cell < cells.size(); ++cell) {
+                if (cells.present(cell) && cells.f[cell] > 0) {
+                    relative.push_back(cells.at(cell).u() / cells.f[cell]);
+                }
+            }
+        }
+    }
+    if (relative.empty()) return std::nullopt;
+    return median(std::move(relative));
+}
+
+/// As if it lay flat, with the budgets of its states.
+proc::SampleSet asIfFlat(const PlacementSignals& signals,
+                         const std::vector<Radians>& ledAngles,
+                         const RigReferences& references,
+                         const proc::AngleUncertainty& uAngle) {
+    proc::SampleSet set;
+    Json budgets = Json::array();
+    for (std::size_t led = 0; led < signals.size(); ++led) {
+        proc::LedTable table{.incidence = ledAngles[led], .bands = {}};
+        for (Band band : kBands) {
+            const std::size_t b = index(band);
+            proc::Calibrated calibrated =
+                proc::calibrate(signals[led][b],
+                                {.whiteSignal = references.white.signals[led][b],
+                                 .blackSignal = references.black.signals[led][b],
+                                 .white = *references.certified.white,
+                                 .black = *references.certified.black},
+                                lightAt(ledAngles[led]),
+                                band,
+                                {.angle = uAngle, .ledDrift = references.profile.ledDrift});
+            budgets.push_back({{"led", led},
+                               {"band", std::string(letter(band))},
+                               {"components", toJson(calibrated.budget)}});
+            table.bands[b] = std::move(calibrated.samples);
+        }
+        set.leds.push_back(std::move(table));
+    }
+    set.info.budgetJson = budgets.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return set;
+}
+
 }  // namespace
 
 Result<Window> configureWindow(driver::Rig& rig) {
@@ -183,44 +231,20 @@ Result<void> checkWhite(const PlacementSignals& white, const PlacementSignals& b
     return {};
 }
 
-proc::SampleSet calibrateSample(const PlacementSignals& signals,
-                                const std::vector<Radians>& ledAngles,
-                                const RigReferences& references,
-                                proc::SampleInfo info) {
-    proc::SampleSet set;
-    Json budgets = Json::array();
-    std::vector<double> relative;
+Result<proc::SampleSet> calibrateSample(const PlacementSignals& signals,
+                                        const std::vector<Radians>& ledAngles,
+                                        const RigReferences& references,
+                                        proc::SampleInfo info,
+                                        bool force) {
+    constexpr Radians kTypicalView = 40_deg;
     const proc::AngleUncertainty uAngle = proc::DirectionUncertainty(references.lens.fit);
-    for (std::size_t led = 0; led < signals.size(); ++led) {
-        proc::LedTable table{.incidence = ledAngles[led], .bands = {}};
-        for (Band band : kBands) {
-            const std::size_t b = index(band);
-            proc::Calibrated calibrated =
-                proc::calibrate(signals[led][b],
-                                {.whiteSignal = references.white.signals[led][b],
-                                 .blackSignal = references.black.signals[led][b],
-                                 .white = *references.certified.white,
-                                 .black = *references.certified.black},
-                                lightAt(ledAngles[led]),
-                                band,
-                                {.angle = uAngle, .ledDrift = references.profile.ledDrift});
-            const proc::CellSamples& cells = calibrated.samples;
-            for (std::size_t cell = 0; cell < cells.size(); ++cell) {
-                if (cells.present(cell) && cells.f[cell] > 0) {
-                    relative.push_back(cells.at(cell).u() / cells.f[cell]);
-                }
-            }
-            budgets.push_back({{"led", led},
-                               {"band", std::string(letter(band))},
-                               {"components", toJson(calibrated.budget)}});
-            table.bands[b] = std::move(calibrated.samples);
-        }
-        set.leds.push_back(std::move(table));
-    }
-    info.budgetJson = budgets.dump(-1, ' ', false, Json::error_handler_t::replace);
-    if (!relative.empty()) info.achievedUncertainty = median(std::move(relative));
+    proc::SampleSet set = asIfFlat(signals, ledAngles, references, uAngle);
+    info.budgetJson = std::move(set.info.budgetJson);
     set.info = std::move(info);
-    return set;
+    const Radians uLens = uAngle(Direction::fromSpherical(kTypicalView, Radians(0)));
+    Result<proc::SampleSet> flat = referredToItsNormal(std::move(set), uLens, force);
+    if (flat) flat->info.achievedUncertainty = achieved(*flat);
+    return flat;
 }
 
 }  // namespace gonio::daemon

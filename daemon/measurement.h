@@ -67,9 +67,12 @@ struct RigReferences {
     const References& certified;
     const RigProfile& profile;
 };
-[[nodiscard]] proc::SampleSet calibrateSample(const PlacementSignals& signals,
-                                              const std::vector<Radians>& ledAngles,
-                                              const RigReferences& references,
-                                              proc::SampleInfo info);
+/// With the tilt of the sample found, and corrected where that is sound (sample_pose.h): Quality
+/// error for a wavy sample unless `force`.
+[[nodiscard]] Result<proc::SampleSet> calibrateSample(const PlacementSignals& signals,
+                                                      const std::vector<Radians>& ledAngles,
+                                                      const RigReferences& references,
+                                                      proc::SampleInfo info,
+                                                      bool force = false);
 
 }  // namespace gonio::daemon

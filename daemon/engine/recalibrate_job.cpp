@@ -78,11 +78,15 @@ Result<std::string> workedOut(const Desk& desk, const Original& before, const Ca
     proc::SampleInfo info = before.sample.info;
     info.calibrationId = set.id();
     info.referenceCertificate = certified->white->certificate().citation;
-    return proc::encodeGonio(
+    constexpr bool kAsItWasAccepted = true;
+    const Result<proc::SampleSet> sample =
         calibrateSample(*signals,
                         anglesOf(before.sample),
                         {loaded->lens, loaded->white, loaded->black, *certified, desk.profile},
-                        std::move(info)));
+                        std::move(info),
+                        kAsItWasAccepted);
+    if (!sample) return sample.error();
+    return proc::encodeGonio(*sample);
 }
 
 }  // namespace

@@ -19,6 +19,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kDarkFrames = 4;
+constexpr std::size_t kLongestRefused = 56;  // of a name, that ".refused" may follow
 // White multiplies into every later sample, so it is averaged longest: 16 frames at least. Its 320
 // us leave a tile just unsaturated; 1.28 ms add light where the view is dim.
 constexpr BracketPlan kWhiteBracket{.frames = 8, .dim = false, .longest = 3, .first = 2};
@@ -70,7 +71,9 @@ private:
     [[nodiscard]] Result<void> fitsThisRig(const ReferenceRecord& reference) const;
     [[nodiscard]] Result<ReferenceRecord> reference(const std::string& kind) const;
     void finish(proc::SampleInfo& info, const Captured& captured) const;
-    Result<SampleRecord> keep(const proc::SampleSet& set, std::vector<proc::RawState> states);
+    Result<SampleRecord> keep(const std::string& name,
+                              const proc::SampleSet& set,
+                              std::vector<proc::RawState> states);
 
     const JobBench& bench_;
     const JobRequest& request_;
@@ -314,20 +317,19 @@ int measuredCells(const proc::SampleSet& set) {
     return cells;
 }
 
-Result<SampleRecord> JobRun::keep(const proc::SampleSet& set, std::vector<proc::RawState> states) {
+Result<SampleRecord> JobRun::keep(const std::string& name,
+                                  const proc::SampleSet& set,
+                                  std::vector<proc::RawState> states) {
     const Result<std::string> raw = rawBytes(set.info, std::move(states));
     if (!raw) return raw.error();
     const Result<std::string> bytes = proc::encodeGonio(set);
     if (!bytes) return bytes.error();
-    auto kept = bench_.store.addSample({.name = request_.name,
-                                        .rig = serial_,
-                                        .dateUtc = set.info.dateUtc,
-                                        .session = bench_.session},
-                                       {.file = *bytes, .raw = *raw});
+    auto kept = bench_.store.addSample(
+        {.name = name, .rig = serial_, .dateUtc = set.info.dateUtc, .session = bench_.session},
+        {.file = *bytes, .raw = *raw});
     if (!kept) return kept.error();
     if (!kept->movedTo.empty()) {
-        log::warning("sample '" + request_.name + "' was there; it is kept as '" + kept->movedTo +
-                     "'");
+        log::warning("sample '" + name + "' was there; it is kept as '" + kept->movedTo + "'");
     }
     return std::move(kept->sample);
 }
@@ -353,15 +355,30 @@ Result<Json> JobRun::measure() {
     finish(about, *captured);
     proc::SampleSet sample;
     const std::vector<Radians> angles = bench_.rig.identify().ledAngles;
-    const auto kept = whileAlive([&] {
+    const auto workedOut = [&](bool force) {
         const Stopwatch calibrating(bench_.computer);
-        sample = calibrateSample(
+        auto calibrated = calibrateSample(
             captured->signals,
             angles,
             {loaded->lens, loaded->white, loaded->black, *certified, bench_.profile},
-            std::move(about));
-        sample.info.computeSeconds += calibrating.elapsed().count();
-        return keep(sample, std::move(captured->raw.states));
+            about,
+            force);
+        if (calibrated) calibrated->info.computeSeconds += calibrating.elapsed().count();
+        return calibrated;
+    };
+    const auto kept = whileAlive([&]() -> Result<SampleRecord> {
+        Result<proc::SampleSet> calibrated = workedOut(request_.force);
+        if (!calibrated) {  // refused; what was captured is kept all the same
+            const Result<proc::SampleSet> forced = workedOut(true);
+            if (!forced) return forced.error();
+            const std::string name = request_.name.substr(0, kLongestRefused) + ".refused";
+            const auto aside = keep(name, *forced, std::move(captured->raw.states));
+            if (!aside) return aside.error();
+            return Error{calibrated.error().kind,
+                         calibrated.error().message + "; it is kept as '" + name + "'"};
+        }
+        sample = std::move(*calibrated);
+        return keep(request_.name, sample, std::move(captured->raw.states));
     });
     if (!kept) return kept.error();
     return Json{{"schema", "gonio/measure/1"},

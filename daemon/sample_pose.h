@@ -1,0 +1,26 @@
+#pragma once
+// The check of how a sample lay (proc/quality/tilt.h), and what follows from it: a tilt that is
+// sure and does harm is corrected, any other goes into the uncertainties; a large one is warned of;
+// a wavy sample is refused. The verdict stands in the sample's information with its evidence.
+
+#include "proc/core/result.h"
+#include "proc/table/sample_set.h"
+
+namespace gonio::daemon {
+
+struct PoseLimits {
+    Radians corrected = 0.05_deg;  ///< and three standard uncertainties: smaller ones are let be
+    Radians warned = 1_deg;
+    Radians refused = 5_deg;  ///< the model of a tilt holds no longer
+    Radians wavy = 0.2_deg;   ///< root mean square between the LEDs' normals
+    double matt = 0.5;  ///< alpha: a wider lobe shows its tilt badly, and hardly suffers from it
+};
+
+/// `uAngle`: standard uncertainty of the lens map's directions, per axis. Quality error for a wavy
+/// sample or a tilt beyond 5 degrees, unless `force`.
+[[nodiscard]] Result<proc::SampleSet> referredToItsNormal(proc::SampleSet sample,
+                                                          Radians uAngle,
+                                                          bool force,
+                                                          const PoseLimits& limits = {});
+
+}  // namespace gonio::daemon

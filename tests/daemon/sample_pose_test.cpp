@@ -1,0 +1,88 @@
+#include "daemon/sample_pose.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include "proc/models/spec.h"
+#include "tests/support/sample_sets.h"
+
+namespace gonio::daemon {
+namespace {
+
+constexpr Radians kLens = 0.01_deg;
+
+/// A surface whose LEDs each see a normal of their own.
+proc::SampleSet seen(const std::string& spec, const std::vector<Direction>& normals) {
+    const auto surface = proc::makeModel(spec);
+    EXPECT_TRUE(surface) << surface.error().message;
+    proc::SampleSet set;
+    const Radians incidences[] = {0_deg, 20_deg, 40_deg, 60_deg};
+    for (std::size_t led = 0; led < 4; ++led) {
+        const auto turn =
+            Eigen::Quaterniond::FromTwoVectors(normals[led].vector(), Eigen::Vector3d::UnitZ());
+        const auto own = [&](const Direction& d) {
+            return *Direction::fromVector(turn * d.vector());
+        };
+        const Direction wi = own(Direction::fromSpherical(incidences[led], Radians(0)));
+        set.leds.push_back(
+            test::ledTable(incidences[led], [&](Radians /*incidence*/, const Direction& wo) {
+                return (*surface)->answer({wi, own(wo)}).f[Band::G] * own(wo).z() / wo.z();
+            }));
+    }
+    set.info.budgetJson = R"([{"led":0,"band":"r","components":[]}])";
+    return set;
+}
+
+const std::string kPlastic = "lambert,albedo=0.1+ggx,alpha=0.1,f0=0.04";
+
+std::vector<Direction> tilted(Radians tilt) {
+    return std::vector<Direction>(4, Direction::fromSpherical(tilt, 30_deg));
+}
+
+bool corrected(const proc::SampleSet& set) {
+    return set.leds[1].bands[0].flags[100].has(Flag::TiltCorrected);
+}
+
+TEST(SamplePose, TiltIsCorrectedAndItsLineStandsInTheBudget) {
+    const auto flat = referredToItsNormal(seen(kPlastic, tilted(0.5_deg)), kLens, false);
+    ASSERT_TRUE(flat) << flat.error().message;
+    EXPECT_TRUE(corrected(*flat));
+    EXPECT_NE(flat->info.qcVerdicts.find("tilt: 0.50 degrees"), std::string::npos)
+        << flat->info.qcVerdicts;
+    EXPECT_NE(flat->info.budgetJson.find("tilt of the sample"), std::string::npos);
+}
+
+TEST(SamplePose, FlatSampleIsLetBe) {
+    const auto sample = seen(kPlastic, tilted(0_deg));
+    const auto same = referredToItsNormal(sample, kLens, false);
+    ASSERT_TRUE(same) << same.error().message;
+    EXPECT_FALSE(corrected(*same));
+    EXPECT_EQ(same->leds[1].bands[0].f[100], sample.leds[1].bands[0].f[100]);
+}
+
+TEST(SamplePose, MattSamplesAreNeverWavyNorTilted) {
+    for (const char* spec : {"lambert,albedo=0.5", "oren-nayar,albedo=0.8,sigma=0.3"}) {
+        const auto same = referredToItsNormal(seen(spec, tilted(0.5_deg)), kLens, false);
+        ASSERT_TRUE(same) << spec << same.error().message;
+        EXPECT_FALSE(corrected(*same)) << spec;
+    }
+}
+
+TEST(SamplePose, WavyOrSteepIsRefusedUnlessForced) {
+    const std::vector<Direction> waves{Direction::fromSpherical(0.5_deg, 0_deg),
+                                       Direction::fromSpherical(0.5_deg, 90_deg),
+                                       Direction::fromSpherical(0.5_deg, 180_deg),
+                                       Direction::fromSpherical(0.5_deg, 270_deg)};
+    for (const auto& normals : {waves, tilted(7_deg)}) {
+        const auto sample = seen(kPlastic, normals);
+        const auto refused = referredToItsNormal(sample, kLens, false);
+        ASSERT_FALSE(refused);
+        EXPECT_EQ(refused.error().kind, ErrorKind::Quality);
+        EXPECT_NE(refused.error().message.find("--force"), std::string::npos);
+        EXPECT_TRUE(referredToItsNormal(sample, kLens, true));
+    }
+}
+
+}  // namespace
+}  // namespace gonio::daemon
