@@ -26,6 +26,7 @@ constexpr double kSteepest = 0.25;          // tan of the largest tilt that is l
 constexpr int kMostIterations = 50;
 // There is a lobe where it explains so much of chi-square.
 constexpr double kLobeChiSquare = 50, kLobeGain = 1.05;
+constexpr double kLeastShare = 0.3;  // of f in the mirror direction, under half of the LEDs
 
 /// One measured cell, the bands' mean.
 struct Sighting {
@@ -250,6 +251,20 @@ std::optional<Normal> normalSeenBy(std::span<const Sighting> sightings,
     return Normal{own, u};
 }
 
+/// A lobe that stands out of its floor: less is the floor's own departure from Lambert's.
+bool standsOut(const SampleSet& sample, const TiltEstimate& estimate) {
+    std::size_t count = 0;
+    for (std::size_t led = 0; led < sample.leds.size(); ++led) {
+        const TiltLobe& lobe = estimate.lobes[led];
+        const Direction wi = Direction::fromSpherical(sample.leds[led].incidence, Radians(0));
+        const Parts parts =
+            partsOf({lobe.alpha, lobe.f0}, Eigen::Matrix3d::Identity(), {wi, mirrorOf(wi)});
+        const double there = lobe.specular * parts.lobe;
+        if (there > kLeastShare * (there + lobe.diffuse * parts.floor)) ++count;
+    }
+    return 2 * count >= sample.leds.size();
+}
+
 Radians wavinessOf(const TiltEstimate& estimate) {
     double squares = 0;
     int count = 0;
@@ -284,6 +299,7 @@ std::optional<TiltEstimate> estimateTilt(const SampleSet& sample, Radians uAngle
         const double misfit = misfitOf(led, estimate.lobes.back(), normal);
         estimate.misfit = std::max(estimate.misfit, misfit);
     }
+    if (!standsOut(sample, estimate)) return std::nullopt;
     estimate.joint.u = uncertaintyOf(*report, estimate.misfit, shape.alpha, uAngle);
     if (estimate.joint.u.value() > kWorstUncertainty) return std::nullopt;
     for (const Sightings& led : leds) {
