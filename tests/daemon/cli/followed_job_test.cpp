@@ -35,41 +35,41 @@ protected:
 };
 
 TEST_F(WithScriptedDaemon, StreamThatBreaksOffIsTakenUpAgainWhereItWas) {
-    daemon.statusText = R"({"daemon":{"newest_event":0},"job":{"id":7,"question":null}})";
-    daemon.events = {progress(1), progress(2), kDone};
-    daemon.jobText = kDocument;
+    daemon.play({.events = {progress(1), progress(2), kDone},
+                 .status = R"({"daemon":{"newest_event":0},"job":{"id":7,"question":null}})",
+                 .job = kDocument});
     const Ran ran = calibrate();
     EXPECT_EQ(ran.exitCode, 0) << ran.err;
     EXPECT_NE(ran.out.find("12 states"), std::string::npos) << ran.out;
 }
 
 TEST_F(WithScriptedDaemon, JobIsFollowedWithoutAStreamToo) {
-    daemon.refusesStreams = true;
-    daemon.jobText = kDocument;
+    daemon.play({.refusesStreams = true, .job = kDocument});
     const Ran ran = calibrate();
     EXPECT_EQ(ran.exitCode, 0) << ran.err;
 }
 
 TEST_F(WithScriptedDaemon, ErrorOfTheJobIsFoundInTheLogbookWhereNoEventTold) {
-    daemon.refusesStreams = true;
-    daemon.jobText = R"({"problem":"quality","message":"too dark","result":null})";
+    daemon.play({.refusesStreams = true,
+                 .job = R"({"problem":"quality","message":"too dark","result":null})"});
     const Ran ran = calibrate();
     EXPECT_EQ(ran.exitCode, 7);
     EXPECT_NE(ran.err.find("too dark"), std::string::npos) << ran.err;
 }
 
 TEST_F(WithScriptedDaemon, ResultThatWasNotKeptIsSaid) {
-    daemon.events = {kDone};
+    daemon.play({.events = {kDone}});
     const Ran ran = calibrate();
     EXPECT_EQ(ran.exitCode, kInternal);
     EXPECT_NE(ran.err.find("not in the logbook"), std::string::npos) << ran.err;
 }
 
 TEST_F(WithScriptedDaemon, QuestionIsAnsweredByItsNumberAndOnce) {
-    daemon.statusText =
-        R"({"daemon":{"newest_event":0},"job":{"id":7,"question":1,"wanted":"turn the tile"}})";
-    daemon.events = {kAsks, kDone};
-    daemon.jobText = kDocument;
+    daemon.play(
+        {.events = {kAsks, kDone},
+         .status =
+             R"({"daemon":{"newest_event":0},"job":{"id":7,"question":1,"wanted":"turn the tile"}})",
+         .job = kDocument});
     const Ran ran = calibrate({"--yes"});
     EXPECT_EQ(ran.exitCode, 0) << ran.err;
     EXPECT_EQ(daemon.posted("/api/v1/jobs/7/proceed"),
@@ -77,16 +77,14 @@ TEST_F(WithScriptedDaemon, QuestionIsAnsweredByItsNumberAndOnce) {
 }
 
 TEST_F(WithScriptedDaemon, AnswerThatComesTooLateIsSaidAndTheJobFollowedOn) {
-    daemon.proceedStatus = 409;
-    daemon.events = {kAsks, kDone};
-    daemon.jobText = kDocument;
+    daemon.play({.events = {kAsks, kDone}, .job = kDocument, .proceedStatus = 409});
     const Ran ran = calibrate({"--yes"});
     EXPECT_EQ(ran.exitCode, 0) << ran.err;
     EXPECT_NE(ran.err.find("nobody asks this"), std::string::npos) << ran.err;
 }
 
 TEST_F(WithScriptedDaemon, WithoutATerminalNobodyCanAnswer) {
-    daemon.events = {kAsks};
+    daemon.play({.events = {kAsks}});
     const Ran ran = calibrate();
     EXPECT_EQ(ran.exitCode, kUsage);
     EXPECT_NE(ran.err.find("turn the tile: this needs a person at a terminal, or --yes; the job is "
@@ -117,7 +115,7 @@ private:
 };
 
 TEST_F(WithScriptedDaemon, CtrlDAtAQuestionIsNoAnswerAndCancels) {
-    daemon.events = {kAsks};
+    daemon.play({.events = {kAsks}});
     const Terminal terminal;
     const pid_t child = test::spawnProcess(
         {GONIO_PROGRAM, "--store", (gonio / "store").string(), "calibrate", "black"},
@@ -138,7 +136,7 @@ TEST_F(WithScriptedDaemon, CtrlDAtAQuestionIsNoAnswerAndCancels) {
 }
 
 TEST_F(WithScriptedDaemon, DaemonThatEndsLeavesWordOfTheJob) {
-    daemon.statusText = R"({"daemon":{"newest_event":0},"job":{"id":7,"question":null}})";
+    daemon.play({.status = R"({"daemon":{"newest_event":0},"job":{"id":7,"question":null}})"});
     const pid_t child = test::spawnProcess(
         {GONIO_PROGRAM, "--store", (gonio / "store").string(), "calibrate", "black"},
         gonio / "out",
@@ -160,7 +158,7 @@ TEST_F(WithScriptedDaemon, WatchingEndsWithTheDaemonAndSaysSo) {
 
 TEST_F(WithScriptedDaemon, AnotherVersionsAnswersAreNotUnderstoodAndNoCrash) {
     for (const char* said : {"no JSON", "[]", "{}", R"({"rig":1,"job":[],"daemon":{}})"}) {
-        daemon.statusText = said;
+        daemon.play({.status = said});
         for (const auto& command : {std::vector<std::string>{"status"},
                                     {"calibrate", "black"},
                                     {"jobs", "cancel"},
@@ -175,7 +173,7 @@ TEST_F(WithScriptedDaemon, AnotherVersionsAnswersAreNotUnderstoodAndNoCrash) {
 }
 
 TEST_F(WithScriptedDaemon, EventOfAnotherVersionEndsTheFollowingWithAWord) {
-    daemon.events = {"event: progress\ndata: {\"job\":7,\"step\":\"one\"}"};
+    daemon.play({.events = {"event: progress\ndata: {\"job\":7,\"step\":\"one\"}"}});
     const Ran ran = calibrate();
     EXPECT_EQ(ran.exitCode, kInternal);
     EXPECT_NE(ran.err.find("not understood"), std::string::npos) << ran.err;

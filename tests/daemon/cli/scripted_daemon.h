@@ -5,7 +5,6 @@
 #include <httplib.h>
 #include <sys/socket.h>
 
-#include <atomic>
 #include <filesystem>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -18,13 +17,28 @@
 
 namespace gonio::test {
 
+/// What it says.
+struct Script {
+    /// Each stream of events ends after the next one of these that its reader has not seen.
+    std::vector<std::string> events;
+    /// Streams are refused, as when too many are open.
+    bool refusesStreams = false;
+    /// The status, and the job's document; a text that is no JSON is said as it is.
+    std::string status = R"({"daemon":{"newest_event":0},"job":null})";
+    std::string job = R"({"problem":null,"message":null,"result":null})";
+    /// HTTP status of the answer to an answer.
+    int proceedStatus = 202;
+};
+
 class ScriptedDaemon {
 public:
     explicit ScriptedDaemon(const Program& program) {
         std::filesystem::create_directories(program / "store");
         server_.set_address_family(AF_UNIX);
-        server_.Get("/api/v1/status", [this](const auto&, auto& reply) { say(reply, status()); });
-        server_.Get("/api/v1/jobs/7", [this](const auto&, auto& reply) { say(reply, job()); });
+        server_.Get("/api/v1/status",
+                    [this](const auto&, auto& reply) { say(reply, script().status); });
+        server_.Get("/api/v1/jobs/7",
+                    [this](const auto&, auto& reply) { say(reply, script().job); });
         server_.Get("/api/v1/events",
                     [this](const auto& asked, auto& reply) { stream(asked, reply); });
         server_.Post(".*", [this](const httplib::Request& asked, httplib::Response& reply) {
@@ -38,20 +52,14 @@ public:
     ScriptedDaemon(const ScriptedDaemon&) = delete;
     ScriptedDaemon& operator=(const ScriptedDaemon&) = delete;
 
+    void play(Script script) {
+        const std::scoped_lock lock(mutex_);
+        script_ = std::move(script);
+    }
     void stop() {
         server_.stop();
         if (thread_.joinable()) thread_.join();
     }
-
-    /// Each stream of events ends after the next one of these that its reader has not seen.
-    std::vector<std::string> events;
-    /// Streams are refused, as when too many are open.
-    std::atomic<bool> refusesStreams{false};
-    /// The status, and the job's document; a text that is no JSON is said as it is.
-    std::string statusText = R"({"daemon":{"newest_event":0},"job":null})";
-    std::string jobText = R"({"problem":null,"message":null,"result":null})";
-    /// Status code of an answer to a question.
-    int proceedStatus = 202;
 
     /// The bodies that were posted there.
     [[nodiscard]] std::vector<std::string> posted(const std::string& path) const {
@@ -64,20 +72,23 @@ public:
     }
 
 private:
-    [[nodiscard]] std::string status() const { return statusText; }
-    [[nodiscard]] std::string job() const { return jobText; }
+    [[nodiscard]] Script script() const {
+        const std::scoped_lock lock(mutex_);
+        return script_;
+    }
     static void say(httplib::Response& reply, const std::string& text) {
         reply.set_content(text, "application/json");
     }
     void stream(const httplib::Request& asked, httplib::Response& reply) {
-        if (refusesStreams) {
+        const Script now = script();
+        if (now.refusesStreams) {
             reply.status = 503;
             return say(reply, R"({"type":"urn:gonio:problem:busy","detail":"too many streams"})");
         }
         const std::size_t seen = std::stoul(asked.get_header_value("Last-Event-ID"));
         std::string text = ":\n\n";
-        if (seen < events.size()) {
-            text = "id: " + std::to_string(seen + 1) + "\n" + events[seen] + "\n\n";
+        if (seen < now.events.size()) {
+            text = "id: " + std::to_string(seen + 1) + "\n" + now.events[seen] + "\n\n";
         }
         reply.set_content(text, "text/event-stream");
     }
@@ -87,7 +98,7 @@ private:
             posts_.emplace_back(asked.path, asked.body);
         }
         reply.status = 202;
-        if (asked.path.ends_with("/proceed")) reply.status = proceedStatus;
+        if (asked.path.ends_with("/proceed")) reply.status = script().proceedStatus;
         if (reply.status >= 400) {
             return say(reply, R"({"type":"urn:gonio:problem:usage","detail":"nobody asks this"})");
         }
@@ -96,7 +107,8 @@ private:
 
     httplib::Server server_;
     std::thread thread_;
-    mutable std::mutex mutex_;
+    mutable std::mutex mutex_;  // of what follows
+    Script script_;
     std::vector<std::pair<std::string, std::string>> posts_;
 };
 
