@@ -8,6 +8,7 @@
 #include "daemon/measurement.h"
 #include "daemon/sequencer.h"
 #include "tests/device/usb_rig_fixture.h"
+#include "tests/support/wait_until.h"
 
 namespace gonio::device_test {
 namespace {
@@ -55,6 +56,19 @@ TEST_F(UsbRigTest, AMeasurementOfTwelveStatesIsThatOfTheInProcessDoor) {
     Measuring twin(std::move(*twinRig), *profile);
     const auto window = daemon::configureWindow(twin.rig);
     ASSERT_TRUE(window) << window.error().message;
+    const daemon::BracketPlan plan = daemon::sampleBracket(Effort::Draft);
+    const auto states = twin.sequencer.states();
+    ASSERT_EQ(states.size(), 12U);
+    const auto next = [&](std::size_t state) {
+        return state + 1 < states.size() ? std::optional(states[state + 1]) : std::nullopt;
+    };
+    // All of the twin's first: the real rig would wait for it without a heartbeat.
+    std::vector<std::vector<Frame>> wanted;
+    for (std::size_t state = 0; state < states.size(); ++state) {
+        auto frames = twin.sequencer.bracket(states[state], plan, next(state));
+        ASSERT_TRUE(frames) << frames.error().message;
+        wanted.push_back(std::move(*frames));
+    }
 
     mock.live().warmUp(*window);
     const auto transport = opened();
@@ -66,27 +80,23 @@ TEST_F(UsbRigTest, AMeasurementOfTwelveStatesIsThatOfTheInProcessDoor) {
 
     Cost cost;
     std::size_t frames = 0;
-    const daemon::BracketPlan plan = daemon::sampleBracket(Effort::Draft);
-    const auto states = real.sequencer.states();
-    ASSERT_EQ(states.size(), 12U);
     for (std::size_t state = 0; state < states.size(); ++state) {
-        const auto then =
-            state + 1 < states.size() ? std::optional(states[state + 1]) : std::nullopt;
         const auto seen =
-            cost.of([&] { return real.sequencer.bracket(states[state], plan, then); });
+            cost.of([&] { return real.sequencer.bracket(states[state], plan, next(state)); });
         ASSERT_TRUE(seen) << seen.error().message;
-        const auto wanted = twin.sequencer.bracket(states[state], plan, then);
-        ASSERT_TRUE(wanted) << wanted.error().message;
         ASSERT_TRUE(real.rig.keepAlive());
-        ASSERT_EQ(seen->size(), wanted->size());
+        ASSERT_EQ(seen->size(), wanted[state].size());
         for (std::size_t i = 0; i < seen->size(); ++i) {
-            ASSERT_EQ((*seen)[i].captureId, (*wanted)[i].captureId);
-            ASSERT_EQ((*seen)[i].pixels, (*wanted)[i].pixels) << "frame " << i;
+            ASSERT_EQ((*seen)[i].captureId, wanted[state][i].captureId);
+            ASSERT_EQ((*seen)[i].pixels, wanted[state][i].pixels) << "frame " << i;
         }
         frames += seen->size();
     }
     EXPECT_EQ(real.rig.anomalies(), driver::Anomalies{});
-    EXPECT_EQ(real.rig.link().counters(), driver::LinkCounters{});
+    // A rig slowed down by a sanitizer may answer after the driver has asked again.
+    if (test::kSlowdown == 1) {
+        EXPECT_EQ(real.rig.link().counters(), driver::LinkCounters{});
+    }
     std::cout << frames << " frames in " << cost.seconds << " s, " << cost.cpu
               << " s of processor time (rig and USB bus simulated in them)\n";
 }

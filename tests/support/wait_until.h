@@ -16,13 +16,15 @@ inline constexpr int kSlowdown = 1;
 /// Ten times what the slowest step of a test takes on two busy cores.
 inline constexpr std::chrono::seconds kPatience{20 * kSlowdown};
 
-/// Whether `condition` held before the deadline.
+/// Whether `condition`, looked at this often, held before the deadline.
 template <class Condition>
-[[nodiscard]] bool waitUntil(Condition condition, std::chrono::milliseconds deadline = kPatience) {
+[[nodiscard]] bool waitUntil(Condition condition,
+                             std::chrono::milliseconds deadline = kPatience,
+                             std::chrono::milliseconds every = std::chrono::milliseconds(2)) {
     const auto end = std::chrono::steady_clock::now() + deadline;
     while (!condition()) {
         if (std::chrono::steady_clock::now() > end) return false;
-        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        std::this_thread::sleep_for(every);
     }
     return true;
 }
