@@ -173,6 +173,10 @@ std::string inProcess() {
 }
 
 TEST_F(Lab, MeasuresOnUsbWhatItMeasuresInProcess) {
+    if (test::kThreadSanitizer) {
+        GTEST_SKIP() << "this long, a rig slowed down so much misses a deadline of the driver; "
+                        "the tests below have the same threads";
+    }
     test::RunningDaemon daemon(gonio, {"--rig", "usb"});
     awaitState("idle");
     EXPECT_EQ(ask({"rigs"})["rigs"][0]["serial"], kSerial);
