@@ -70,13 +70,12 @@ Result<LensRecord> takeLens(const Bench& bench, const PlaceMirror& place) {
         if (Result<void> dark = bench.rig.darken(); !dark) return dark.error();
         if (Result<void> placed = place(wedge); !placed) return placed.error();
         for (int led = 0; led < static_cast<int>(leds.size()); ++led) {
-            const Direction seen =
-                proc::mirroredBy(wedge, lightAt(leds[static_cast<std::size_t>(led)]));
+            const Direction light = lightAt(leds[static_cast<std::size_t>(led)]);
             const Result<void> on =
                 bench.step("mirror " + fixed(wedge.aboutX.degrees(), 0) + "/" +
                            fixed(wedge.aboutY.degrees(), 0) + " LED " + std::to_string(led));
             if (!on) return on.error();
-            if (seen.theta() > kUsableSpot) continue;
+            if (proc::mirroredBy(wedge, light).theta() > kUsableSpot) continue;
             const auto frames = sequencer.expose({led, Band::G},
                                                  bench.profile.dimLevels.back(),
                                                  bench.profile.exposures.front(),
@@ -86,12 +85,13 @@ Result<LensRecord> takeLens(const Bench& bench, const PlaceMirror& place) {
             if (!merged) return merged.error();
             const Result<proc::Spot> spot = proc::findSpot(*merged);
             if (!spot) return spot.error();
-            spots.push_back({.direction = seen, .at = spot->at, .sigma = spot->sigma});
+            spots.push_back({.wedge = wedge, .light = light, .at = spot->at, .sigma = spot->sigma});
         }
     }
     const proc::SensorPoint middle{window->x + 0.5 * window->size.width,
                                    window->y + 0.5 * window->size.height};
-    Result<proc::LensFit> fit = proc::fitLens(spots, middle, kPixelsPerDegree);
+    Result<proc::LensFit> fit =
+        proc::fitLens(spots, middle, kPixelsPerDegree, bench.profile.wedgeTolerance);
     if (!fit) return fit.error();
     return LensRecord{
         .fit = std::move(*fit), .spots = static_cast<int>(spots.size()), .dateUtc = {}};

@@ -155,6 +155,7 @@ Result<RigProfile> readProfile(const fs::path& file) {
     profile.noise.readNoiseElectrons = keys.positive("sensor.read_noise_electrons");
     profile.noise.darkElectronsPerSecond = keys.positive("sensor.dark_electrons_per_second");
     profile.noise.fullScaleDn = keys.positive("sensor.full_scale_dn");
+    profile.wedgeTolerance = Radians::fromDegrees(keys.positive("mirror.wedge_u_deg"));
     profile.ledDrift = keys.relative("led.drift_relative");
     profile.exposures = keys.wholeMicroseconds("bracket.exposures_us");
     profile.dimLevels = keys.fractions("bracket.dim_levels");

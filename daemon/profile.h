@@ -23,6 +23,7 @@ struct RigProfile {
     std::string hash;   ///< of the file's bytes: eight hexadecimal digits
     int cameraUsb = 2;  ///< the camera's USB, 2 or 3; a rig tells its own frame period
     proc::SensorNoise noise;
+    Radians wedgeTolerance;                ///< of the mirror's wedges about either axis, k = 1
     double ledDrift = 0;                   ///< of the light between two captures, relative, k = 1
     std::vector<Microseconds> exposures;   ///< ascending
     std::vector<double> dimLevels;         ///< fractions of full level, descending

@@ -1,6 +1,7 @@
 #include "sim/pose.h"
 
 #include <Eigen/Geometry>
+#include <bit>
 #include <cmath>
 
 #include "sim/random.h"
@@ -8,13 +9,16 @@
 namespace gonio::sim {
 namespace {
 
-constexpr std::uint64_t kWaves = 0x7761766573;  // their own stream
+constexpr std::uint64_t kWaves = 0x7761766573;     // their own stream
+constexpr std::uint64_t kWedges = 0x776564676573;  // theirs
 
 Eigen::Matrix3d rotation(const Wedge& wedge) {
     return (Eigen::AngleAxisd(wedge.aboutY.value(), Eigen::Vector3d::UnitY()) *
             Eigen::AngleAxisd(wedge.aboutX.value(), Eigen::Vector3d::UnitX()))
         .toRotationMatrix();
 }
+
+std::uint64_t bitsOf(Radians angle) { return std::bit_cast<std::uint64_t>(angle.value()); }
 
 }  // namespace
 
@@ -25,6 +29,14 @@ Direction mirrored(const Direction& light, const Wedge& wedge) {
          Eigen::Vector3d::UnitZ());
     const Eigen::Vector3d& wi = light.vector();
     return *Direction::fromVector(2 * normal.dot(wi) * normal - wi);
+}
+
+Wedge asGround(const Wedge& nominal, std::uint64_t seed, Radians tolerance) {
+    if (tolerance == Radians()) return nominal;
+    const std::uint64_t key =
+        mixed(mixed(mixed(seed, kWedges), bitsOf(nominal.aboutX)), bitsOf(nominal.aboutY));
+    return {nominal.aboutX + tolerance * gaussian(key, 0),
+            nominal.aboutY + tolerance * gaussian(key, 1)};
 }
 
 std::array<Wedge, kLeds> waves(std::uint64_t seed, Radians size) {

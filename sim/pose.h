@@ -21,6 +21,10 @@ struct Wedge {
 /// The direction in which a mirror with this wedge shows the LED.
 [[nodiscard]] Direction mirrored(const Direction& light, const Wedge& wedge);
 
+/// The wedge that is there for a nominal one: off by the tolerance (k = 1) about either axis, drawn
+/// from the seed and the nominal angles, so that the same wedge is always off by the same.
+[[nodiscard]] Wedge asGround(const Wedge& nominal, std::uint64_t seed, Radians tolerance);
+
 /// How the spots of the four LEDs on a wavy surface lie, each on a wedge of its own: drawn from the
 /// seed, Gaussian about both axes, then brought to mean 0 and to the given root mean square of
 /// hypot(aboutX, aboutY). Size 0: flat.

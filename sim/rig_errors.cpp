@@ -45,6 +45,12 @@ constexpr std::array kEntries{
           2,
           true,
           [](RigErrors& e, double v) { e.sourceDiameter = Radians::fromDegrees(v); }},
+    Entry{"wedge_deg",
+          0.01,
+          0,
+          0.5,
+          true,
+          [](RigErrors& e, double v) { e.wedges = Radians::fromDegrees(v); }},
     Entry{
         "bits", kSaid, 8, 12, false, [](RigErrors& e, double v) { e.bits = static_cast<int>(v); }},
 };

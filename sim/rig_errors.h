@@ -18,6 +18,7 @@
 //   inl         -0.02..0.02, usual 0.003: of full well, how far the response bows up at half of it
 //   crosstalk   0..0.2, usual 0.01: share of a band's light that is other bands' (band_mixture.h)
 //   source_deg  0..2, usual 1: diameter of the LEDs seen from the sample (source_disc.h)
+//   wedge_deg   0..0.5, usual 0.01: a mirror's wedge is off by so much about either axis, k = 1
 //   bits        8, 10 or 12, always 12: of a pixel
 
 #include <cstdint>
@@ -47,6 +48,7 @@ struct RigErrors {
     double nonLinearity = 0;
     double crosstalk = 0;
     Radians sourceDiameter{};
+    Radians wedges{};
     int bits = 12;
     bool operator==(const RigErrors&) const = default;
 };

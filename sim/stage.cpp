@@ -77,7 +77,8 @@ LedLight ledLight(const Placement& placement,
     const View& view = field.view();
     const bool soft = placement.role == Role::Sample && placement.errors.softness > 0;
     LedLight images{.steady = darkness(view.size), .lobe = darkness(soft ? view.size : Size{})};
-    const MirrorImage image(placement.wedge, flaws.rig.sourceDiameter, led);
+    const MirrorImage image(
+        asGround(placement.wedge, flaws.seed, flaws.rig.wedges), flaws.rig.sourceDiameter, led);
     const SurfaceLight surface(placement, flaws, led);
     parallelFor(static_cast<std::size_t>(view.size.height), [&](IndexRange rows) {
         for (std::size_t row = rows.begin; row < rows.end; ++row) {

@@ -50,7 +50,7 @@ step() { # TEXT COMMAND...: one line of progress, then the command
 }
 
 "$gonio" sim place mirror --seed 1 --serial SIM-0001 --systematic random
-step "calibrate: lens map, mirror on five wedges" "$gonio" calibrate mirror
+step "calibrate: lens map, mirror on nine wedges" "$gonio" calibrate mirror
 "$gonio" sim place black
 step "calibrate: dark frames and black reference" "$gonio" calibrate black
 "$gonio" sim place white

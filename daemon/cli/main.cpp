@@ -126,7 +126,7 @@ void Program::addCalibration() {
     const auto add = [&](const std::string& name, const std::string& help, Reference reference) {
         command(*parent, name, help, [this, reference] { return calibrate(common, reference); });
     };
-    add("mirror", "the lens map, from a mirror on five wedges", Reference::Mirror);
+    add("mirror", "the lens map, from a mirror on nine wedges", Reference::Mirror);
     add("black", "dark frames and the black reference", Reference::Black);
     add("white", "the white reference", Reference::White);
 

@@ -1,5 +1,8 @@
 #pragma once
-// The lens map of one rig from mirror spots: where each known direction was seen.
+// The lens map of one rig from mirror spots: where each direction was seen that a light and a wedge
+// make known. Wedges and lights have tolerances, and what a wedge is wrong by moves all of its
+// spots together; so the errors of all are estimated along with the lens, each drawn to zero by its
+// tolerance, and what stays unknown of them is in the covariance of the map.
 
 #include <Eigen/Core>
 #include <span>
@@ -7,11 +10,13 @@
 
 #include "proc/core/result.h"
 #include "proc/optics/lens_map.h"
+#include "proc/optics/mirror.h"
 
 namespace gonio::proc {
 
 struct MirrorSpot {
-    Direction direction;  ///< known from the LED and the wedge
+    Wedge wedge;  ///< nominal
+    Direction light;
     SensorPoint at;
     double sigma = 0;  ///< of either coordinate, sensor pixels
 };
@@ -40,11 +45,13 @@ private:
     Eigen::MatrixXd covariance_;
 };
 
-/// Starts from an even f-theta lens about `middle`. Quality error when the spots leave the map
-/// undetermined (all from one placement), when there are fewer than 5, or when they do not lie
-/// within half a degree of any such map.
+/// `wedgeTolerance`: standard uncertainty of a wedge's angle about either axis; zero takes the
+/// nominal angles as they are. Starts from an even f-theta lens about `middle`. Quality error when
+/// the spots leave the map undetermined (all from one placement), when there are fewer than 5, or
+/// when they do not lie within half a degree of any such map.
 [[nodiscard]] Result<LensFit> fitLens(std::span<const MirrorSpot> spots,
                                       SensorPoint middle,
-                                      double pixelsPerDegree);
+                                      double pixelsPerDegree,
+                                      Radians wedgeTolerance);
 
 }  // namespace gonio::proc

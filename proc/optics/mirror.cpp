@@ -5,12 +5,16 @@
 namespace gonio::proc {
 
 std::span<const Wedge> mirrorWedges() {
-    static constexpr std::array<Wedge, 5> kWedges{{
+    static constexpr std::array<Wedge, 9> kWedges{{
         {0_deg, 0_deg},
-        {7_deg, 0_deg},
-        {-7_deg, 0_deg},
-        {0_deg, 7_deg},
-        {0_deg, -7_deg},
+        {15_deg, 0_deg},
+        {-15_deg, 0_deg},
+        {0_deg, 15_deg},
+        {0_deg, -15_deg},
+        {25_deg, 0_deg},
+        {-25_deg, 0_deg},
+        {0_deg, 25_deg},
+        {0_deg, -25_deg},
     }};
     return kWedges;
 }

@@ -13,11 +13,13 @@ struct Wedge {
     Radians aboutX;
     Radians aboutY;
 
-    bool operator==(const Wedge&) const = default;
+    auto operator<=>(const Wedge&) const = default;
 };
 
-/// The five placements of `calibrate mirror`: flat, and 7 degrees about x and y, both ways. One
-/// placement alone has all its spots on one line and leaves the map singular.
+/// The nine placements of `calibrate mirror`: flat, and 15 and 25 degrees about x and y, both ways.
+/// One placement alone has all its spots on one line and leaves the map singular. The steeper
+/// wedges bring spots to where the rest only extrapolate to, and all of them average out what each
+/// wedge's own angle is wrong by. A light that a wedge sends outside the field has no spot there.
 [[nodiscard]] std::span<const Wedge> mirrorWedges();
 
 /// The direction in which a mirror on `wedge` shows the light; below the horizon when it does.

@@ -5,11 +5,15 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <cmath>
+#include <iostream>
 
 #include "driver/steady_clock.h"
 #include "proc/models/spec.h"
 #include "proc/radiance/merge.h"
 #include "sim/in_process.h"
+#include "sim/optics.h"
+#include "sim/rig_errors.h"
 #include "tests/optics/lenses.h"
 
 namespace gonio::daemon {
@@ -124,6 +128,57 @@ TEST_F(MeasurementOnSim, CancellingAtAnyKindOfStepLeavesTheRigDarkAndUsable) {
     const auto capture = rig->capture({.planStep = nextPlanStep++, .exposure = Microseconds(100)});
     EXPECT_TRUE(capture) << capture.error().message;
     EXPECT_EQ(rig->anomalies(), driver::Anomalies{});
+}
+
+/// Root mean square of the map's errors over the disc to 75 degrees, each square pixel alike.
+double rmsDegrees(const proc::LensMap& map, const sim::Optics& truth) {
+    double squares = 0, area = 0;
+    for (double theta = 2.5; theta <= 75; theta += 2.5) {
+        for (double phi = 0; phi < 360; phi += 15) {
+            const Direction wo =
+                Direction::fromSpherical(Radians::fromDegrees(theta), Radians::fromDegrees(phi));
+            const sim::ImagePoint at = truth.pixelOf(wo);
+            const auto seen = map.directionAt({at.x, at.y});
+            EXPECT_TRUE(seen);
+            if (seen) squares += theta * std::pow(angleBetween({wo, *seen}).degrees(), 2);
+            area += theta;
+        }
+    }
+    return std::sqrt(squares / area);
+}
+
+TEST(LensOnSim, IsRightTo0Point02DegreesOverTheDiscOnWedgesThatAreOff) {
+    auto profile = readProfile(defaultProfile());
+    ASSERT_TRUE(profile) << profile.error().message;
+    const auto errors = sim::parseRigErrors("typical", {});
+    ASSERT_TRUE(errors);
+    double squares = 0;
+    const std::vector<std::string> serials{"SIM-0001", "SIM-0004"};
+    for (const std::string& serial : serials) {
+        sim::InProcessDoor door({.serial = serial, .seed = 7, .rig = *errors});
+        auto rig = driver::Rig::open(door, 7);
+        ASSERT_TRUE(rig) << rig.error().message;
+        const driver::SteadyClock computer;
+        std::uint64_t nextPlanStep = 1;
+        const auto lens =
+            measureLens({.rig = *rig,
+                         .profile = *profile,
+                         .nextPlanStep = nextPlanStep,
+                         .clock = computer,
+                         .step = [](const std::string&) { return Result<void>(); }},
+                        [&](const proc::Wedge& wedge) -> Result<void> {
+                            door.device().place({.role = sim::Role::Mirror,
+                                                 .surface = nullptr,
+                                                 .wedge = {wedge.aboutX, wedge.aboutY}});
+                            return {};
+                        });
+        ASSERT_TRUE(lens) << lens.error().message;
+        const double rms = rmsDegrees(lens->fit.map, sim::Optics(serial, {640, 512}));
+        std::cout << serial << ": " << lens->spots << " spots, " << lens->fit.rmsPixels
+                  << " px rms, " << rms << " degrees rms over the disc\n";
+        squares += rms * rms;
+    }
+    EXPECT_LT(std::sqrt(squares / static_cast<double>(serials.size())), 0.02);
 }
 
 }  // namespace

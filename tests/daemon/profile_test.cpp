@@ -20,6 +20,8 @@ electrons_per_dn = 2.6
 read_noise_electrons = 2.4
 dark_electrons_per_second = 3
 full_scale_dn = 4095
+[mirror]
+wedge_u_deg = 0.01
 [led]
 drift_relative = 0.002
 [bracket]
@@ -77,6 +79,7 @@ TEST_F(Profile, EveryKeyIsAskedForByName) {
                                   "read_noise_electrons",
                                   "dark_electrons_per_second",
                                   "full_scale_dn",
+                                  "wedge_u_deg",
                                   "drift_relative",
                                   "exposures_us",
                                   "dim_levels",

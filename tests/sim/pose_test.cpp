@@ -57,5 +57,22 @@ TEST(Pose, WavesHaveMeanZeroAndTheirSizeAsRootMeanSquare) {
     for (const Wedge& spot : waves(1, 0_deg)) EXPECT_TRUE(spot.flat());
 }
 
+TEST(Pose, AWedgeIsAlwaysOffByTheSame) {
+    double squares = 0;
+    constexpr int kWedges = 500;
+    for (int i = 0; i < kWedges; ++i) {
+        const Wedge nominal{Radians::fromDegrees(0.1 * i), 0_deg};
+        const Wedge there = asGround(nominal, 3, 0.01_deg);
+        const Wedge again = asGround(nominal, 3, 0.01_deg);
+        EXPECT_EQ(there.aboutX, again.aboutX);
+        EXPECT_EQ(there.aboutY, again.aboutY);
+        EXPECT_NE(there.aboutY, asGround(nominal, 4, 0.01_deg).aboutY);
+        squares += std::pow((there.aboutX - nominal.aboutX).degrees(), 2) +
+                   std::pow(there.aboutY.degrees(), 2);
+    }
+    EXPECT_NEAR(std::sqrt(squares / (2 * kWedges)), 0.01, 0.001);
+    EXPECT_EQ(asGround({7_deg, 0_deg}, 3, 0_deg).aboutX, 7_deg);
+}
+
 }  // namespace
 }  // namespace gonio::sim

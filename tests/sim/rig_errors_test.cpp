@@ -32,6 +32,7 @@ TEST(RigErrors, ANameWithoutASizeHasItsUsualOne) {
     EXPECT_EQ(parsed("inl").nonLinearity, 0.003);
     EXPECT_EQ(parsed("crosstalk").crosstalk, 0.01);
     EXPECT_EQ(parsed("source_deg").sourceDiameter, 1_deg);
+    EXPECT_EQ(parsed("wedge_deg").wedges, 0.01_deg);
 }
 
 TEST(RigErrors, SizesAreAsSaid) {
@@ -46,10 +47,13 @@ TEST(RigErrors, SizesAreAsSaid) {
                            .nonLinearity = -0.02,
                            .crosstalk = 0.2,
                            .sourceDiameter = 2_deg,
+                           .wedges = 0.5_deg,
                            .bits = 10};
-    EXPECT_EQ(parsed("glare=0.05,drift=0.003,step=-0.05@300,offset_us=-14,prnu=0,column_e=20,"
-                     "celsius=80,doubling_k=6,inl=-0.02,crosstalk=0.2,source_deg=2,bits=10"),
-              wanted);
+    EXPECT_EQ(
+        parsed(
+            "glare=0.05,drift=0.003,step=-0.05@300,offset_us=-14,prnu=0,column_e=20,"
+            "celsius=80,doubling_k=6,inl=-0.02,crosstalk=0.2,source_deg=2,wedge_deg=0.5,bits=10"),
+        wanted);
 }
 
 TEST(RigErrors, TypicalIsAllThatARigHasAtOnceAndWhatFollowsOverrides) {
@@ -59,7 +63,8 @@ TEST(RigErrors, TypicalIsAllThatARigHasAtOnceAndWhatFollowsOverrides) {
                            .columnNoise = 0.5,
                            .nonLinearity = 0.003,
                            .crosstalk = 0,
-                           .sourceDiameter = 1_deg};
+                           .sourceDiameter = 1_deg,
+                           .wedges = 0.01_deg};
     EXPECT_EQ(parsed("typical,crosstalk=0"), wanted);
 }
 
