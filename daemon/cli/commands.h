@@ -117,4 +117,12 @@ struct PlotOptions {
 };
 Result<void> plot(const CommonOptions& common, const PlotOptions& options);
 
+struct TradeOptions {
+    bool quick = false;            ///< fewer materials and wanted uncertainties
+    std::vector<int> levels;       ///< numbers of LED levels, 1..3; empty: all
+    std::filesystem::path output;  ///< a folder; empty: the working folder
+};
+/// What best plans take and achieve, by rig, LED levels, material and wanted uncertainty.
+Result<void> tradeAcquisition(const CommonOptions& common, const TradeOptions& options);
+
 }  // namespace gonio::daemon

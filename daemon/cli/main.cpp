@@ -47,6 +47,7 @@ struct Program {
     ConvertOptions convert;
     ExportOptions exported;
     PlotOptions plot;
+    TradeOptions trade;
     Command chosen;
     bool verbose = false;
 
@@ -61,6 +62,7 @@ struct Program {
     void addDaemon();
     void addSession();
     void addFiles();
+    void addEvidence();
 };
 
 CLI::App* Program::command(CLI::App& parent,
@@ -242,6 +244,21 @@ void Program::addFiles() {
     sub->add_option("-o,--output", plot.output, "folder for the pictures");
 }
 
+void Program::addEvidence() {
+    CLI::App* parent = app.add_subcommand("trade", "the trade of speed for accuracy, measured");
+    parent->require_subcommand(1);
+    parent->fallthrough();
+    CLI::App* sub =
+        command(*parent,
+                "acquisition",
+                "seconds against uncertainty of the best plans, as CSV, Markdown and SVG",
+                [this] { return tradeAcquisition(common, trade); });
+    sub->add_flag("--quick", trade.quick, "two materials and three wanted uncertainties");
+    sub->add_option("--levels", trade.levels, "numbers of LED levels, of 1, 2 and 3; default: all")
+        ->check(CLI::Range(1, 3));
+    sub->add_option("-o,--output", trade.output, "folder for the files");
+}
+
 Program::Program() {
     app.require_subcommand(1);
     app.set_version_flag("--version", GONIO_VERSION);
@@ -257,6 +274,7 @@ Program::Program() {
     addMeasuring();
     addSim();
     addFiles();
+    addEvidence();
 }
 
 /// What is wrong with the command line, in one line: a word that is no command is named, where the

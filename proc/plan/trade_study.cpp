@@ -46,12 +46,15 @@ TradeSweep TradeSweep::full() {
 TradeSweep TradeSweep::quick() {
     TradeSweep sweep = full();
     sweep.materials = {tradeMaterials().front(), tradeMaterials().back()};
-    sweep.wanted = {0.10, 0.01, 0.003};
+    sweep.wanted = {0.10, 0.03, 0.01};
     return sweep;
 }
 
-Result<std::vector<TradeRow>> tradeAcquisition(const TradeSweep& sweep) {
+Result<std::vector<TradeRow>> tradeAcquisition(const TradeSweep& sweep,
+                                               const TradeProgress& progress) {
     std::vector<TradeRow> rows;
+    const std::size_t count =
+        sweep.rigs.size() * sweep.levels.size() * sweep.materials.size() * sweep.wanted.size();
     for (const TradeRigKind& kind : sweep.rigs) {
         for (const int levels : sweep.levels) {
             const LevelChoice choice = levelChoice(levels);
@@ -59,6 +62,7 @@ Result<std::vector<TradeRow>> tradeAcquisition(const TradeSweep& sweep) {
             for (const TradeMaterial& material : sweep.materials) {
                 const std::vector<StatePilot> states = tradeStates(material, choice.budget);
                 for (const double wanted : sweep.wanted) {
+                    if (progress) progress(rows.size(), count);
                     PlanGoal goal = sweep.goal;
                     goal.wanted = wanted;
                     Result<TradeRow> row =

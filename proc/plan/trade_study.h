@@ -3,6 +3,7 @@
 // what the best plan takes and achieves. Nothing is measured and nothing drawn at random: the rows
 // are predictions, whose random part tests/plan holds against merged pictures.
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -27,7 +28,7 @@ struct TradeSweep {
 
     /// Both rigs, 1..3 levels, all materials, 10, 3, 1, 0.5 and 0.3 %.
     [[nodiscard]] static TradeSweep full();
-    /// Gloss metal and white, 10, 1 and 0.3 %.
+    /// Gloss metal and white, 10, 3 and 1 %: below, plans of hundreds of frames take long to prove.
     [[nodiscard]] static TradeSweep quick();
 };
 
@@ -42,8 +43,12 @@ struct TradeRow {
     CellCounts counts;
 };
 
+/// Told before each row: how many there will be, and how many are done.
+using TradeProgress = std::function<void(std::size_t done, std::size_t rows)>;
+
 /// In the order of the sweep: rigs, levels, materials, wanted. Usage error as of the planner.
-[[nodiscard]] Result<std::vector<TradeRow>> tradeAcquisition(const TradeSweep& sweep);
+[[nodiscard]] Result<std::vector<TradeRow>> tradeAcquisition(const TradeSweep& sweep,
+                                                             const TradeProgress& progress = {});
 
 /// Published time of a measurement with the MiniDiff V2 (radiometry.md 1).
 inline constexpr Seconds kMiniDiffSeconds{135};

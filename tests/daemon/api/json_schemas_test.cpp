@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "daemon/api/api.h"
@@ -212,6 +213,19 @@ TEST_F(ProgramDocuments, OfWrittenFilesConform) {
 
 TEST_F(ProgramDocuments, OfTheDoctorConforms) {
     EXPECT_EQ(expectConforms({"doctor"})["findings"].size(), 8U);
+}
+
+TEST_F(ProgramDocuments, OfTheTradeOfAcquisitionConforms) {
+    const std::string folder = (gonio / "trade").string();
+    const Json trade =
+        expectConforms({"trade", "acquisition", "--quick", "--levels", "3", "-o", folder});
+    ASSERT_EQ(trade["rows"].size(), 12U);  // two rigs, two materials, three wanted
+    for (const Json& row : trade["rows"]) EXPECT_LE(row["random"]["worst"], row["wanted"]) << row;
+    ASSERT_EQ(trade["files"].size(), 3U);
+    const std::string csv = test::textOf(trade["files"][0].get<std::string>());
+    EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 13);
+    EXPECT_EQ(gonio({"trade", "acquisition", "--levels", "4"}).exitCode, 2);
+    EXPECT_EQ(gonio({"trade"}).exitCode, 2);
 }
 
 TEST_F(ProgramDocuments, OfLossesConform) {
