@@ -18,6 +18,7 @@ namespace gonio::daemon {
 struct Processed {
     proc::CellSignal signal;
     proc::RawState raw;
+    std::optional<LightStep> lightStep;
     Seconds compute{0};
 };
 

@@ -35,10 +35,6 @@ Result<proc::DarkLibrary> takeDarks(const Bench& bench, Sequencer& sequencer, in
     return library;
 }
 
-std::string stateName(State state) {
-    return "LED " + std::to_string(state.led) + " " + std::string(letter(state.band));
-}
-
 double medianSignal(const proc::CellSignal& signal) {
     std::vector<double> present;
     for (std::size_t cell = 0; cell < signal.size(); ++cell) {

@@ -9,6 +9,7 @@
 #include <functional>
 #include <string>
 
+#include "daemon/light_watch.h"
 #include "daemon/profile.h"
 #include "daemon/references.h"
 #include "daemon/rig_calibration.h"
@@ -47,8 +48,9 @@ using PlaceMirror = std::function<Result<void>(const proc::Wedge&)>;
 struct Captured {
     PlacementSignals signals;
     proc::RawCapture raw;
-    double chiSquarePerFreedom = 0;  ///< of all merges; 1 where noise alone differs
-    Seconds compute{0};              ///< of merging and binning, though the rig went on meanwhile
+    std::vector<LightStep> lightSteps;  ///< in the order of the states
+    double chiSquarePerFreedom = 0;     ///< of all merges; 1 where noise alone differs
+    Seconds compute{0};  ///< of merging and binning, though the rig went on meanwhile
 };
 [[nodiscard]] Result<Captured> measurePlacement(const Bench& bench,
                                                 const proc::LensMap& lens,

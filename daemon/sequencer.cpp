@@ -21,6 +21,10 @@ driver::CaptureRequest toTake(State state, const Shot& shot, int frames) {
 
 }  // namespace
 
+std::string stateName(State state) {
+    return "LED " + std::to_string(state.led) + " " + std::string(letter(state.band));
+}
+
 BracketPlan sampleBracket(Effort effort) {
     switch (effort) {
         case Effort::Draft: return {.frames = 1, .longest = 4};

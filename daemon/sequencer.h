@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "daemon/bracket_ladder.h"
@@ -24,6 +25,9 @@ struct State {
     int led = 0;
     Band band = Band::R;
 };
+
+/// "LED 2 g".
+[[nodiscard]] std::string stateName(State state);
 
 class Sequencer {
 public:

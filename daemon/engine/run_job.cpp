@@ -108,6 +108,8 @@ void JobRun::finish(proc::SampleInfo& info, const Captured& captured) const {
     info.rigSeconds = onRig_.elapsed().count();
     info.computeSeconds = captured.compute.count();
     info.extra["chi_square_per_freedom"] = shortest(captured.chiSquarePerFreedom);
+    const std::string steps = described(captured.lightSteps);
+    info.extra["light"] = steps.empty() ? "steady within each bracket" : steps;
 }
 
 Result<Captured> JobRun::capture(const BracketPlan& plan, int darkFrames) {
@@ -185,6 +187,13 @@ Result<void> JobRun::checkValidity(const CalibrationSet& set) const {
     return {};
 }
 
+/// Quality error for light that changed in the middle of a bracket.
+Result<void> checkSteady(const Captured& captured, const std::string& whatToDo) {
+    if (captured.lightSteps.empty()) return {};
+    return Error{ErrorKind::Quality,
+                 "the light changed: " + described(captured.lightSteps) + "; " + whatToDo};
+}
+
 Result<Json> JobRun::calibrateMirror() {
     if (Result<void> placed = expectPlaced("mirror"); !placed) return placed.error();
     const Bench bench = measuring();
@@ -222,6 +231,9 @@ Result<Json> JobRun::calibrateTile(bool white) {
     if (!black) return black.error();
     Result<Captured> captured = capture(white ? kWhiteBracket : kBlackBracket, 2 * kDarkFrames);
     if (!captured) return captured.error();
+    if (Result<void> steady = checkSteady(*captured, "calibrate " + kind + " again"); !steady) {
+        return steady.error();
+    }
     if (white) {
         if (Result<void> bright = checkWhite(captured->signals, black->signals); !bright) {
             return bright.error();
@@ -279,8 +291,7 @@ Result<Json> JobRun::verifyWhite() {
             const double ratio =
                 medianRatio(captured->signals[led][index(band)], white->signals[led][index(band)]);
             states.push_back({{"led", led}, {"band", std::string(letter(band))}, {"ratio", ratio}});
-            const std::string state =
-                "LED " + std::to_string(led) + " " + std::string(letter(band));
+            const std::string state = stateName({static_cast<int>(led), band});
             if (std::isnan(ratio)) {
                 return Error{ErrorKind::Quality,
                              state + ": no cell was seen both now and when white was calibrated"};
@@ -355,7 +366,10 @@ Result<Json> JobRun::measure() {
     finish(about, *captured);
     proc::SampleSet sample;
     const std::vector<Radians> angles = bench_.rig.identify().ledAngles;
-    const auto workedOut = [&](bool force) {
+    const auto workedOut = [&](bool force) -> Result<proc::SampleSet> {
+        const Result<void> steady =
+            checkSteady(*captured, "measure again, or measure with --force");
+        if (!steady && !force) return steady.error();
         const Stopwatch calibrating(bench_.computer);
         auto calibrated = calibrateSample(
             captured->signals,
@@ -378,6 +392,10 @@ Result<Json> JobRun::measure() {
                          calibrated.error().message + "; it is kept as '" + name + "'"};
         }
         sample = std::move(*calibrated);
+        if (!captured->lightSteps.empty()) {
+            log::warning("the light changed: " + described(captured->lightSteps) +
+                         "; measured all the same");
+        }
         return keep(request_.name, sample, std::move(captured->raw.states));
     });
     if (!kept) return kept.error();

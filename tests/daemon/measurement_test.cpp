@@ -75,6 +75,7 @@ TEST_F(MeasurementOnSim, MergingBesideTheCapturesChangesNoBit) {
     EXPECT_EQ(steps.back(), "LED 3 b");
     EXPECT_GT(seen->compute.count(), 0);
     ASSERT_EQ(seen->raw.states.size(), 12U);
+    EXPECT_TRUE(seen->lightSteps.empty()) << described(seen->lightSteps);
 
     // One after the other, on a rig like it.
     sim::InProcessDoor twinDoor{{}};
@@ -128,6 +129,46 @@ TEST_F(MeasurementOnSim, CancellingAtAnyKindOfStepLeavesTheRigDarkAndUsable) {
     const auto capture = rig->capture({.planStep = nextPlanStep++, .exposure = Microseconds(100)});
     EXPECT_TRUE(capture) << capture.error().message;
     EXPECT_EQ(rig->anomalies(), driver::Anomalies{});
+}
+
+/// All states of a glossy sample on a rig with these errors.
+Result<Captured> capturedWith(const std::string& rigErrors) {
+    const auto errors = sim::parseRigErrors(rigErrors, {});
+    if (!errors) return errors.error();
+    const auto profile = readProfile(defaultProfile());
+    if (!profile) return profile.error();
+    sim::InProcessDoor door({.rig = *errors});
+    door.device().place({.role = sim::Role::Sample,
+                         .surface = std::move(*proc::makeModel("ggx,alpha=0.2,f0=0.5")),
+                         .wedge = {}});
+    auto rig = driver::Rig::open(door, 7);
+    if (!rig) return rig.error();
+    const driver::SteadyClock computer;
+    std::uint64_t nextPlanStep = 1;
+    return measurePlacement({.rig = *rig,
+                             .profile = *profile,
+                             .nextPlanStep = nextPlanStep,
+                             .clock = computer,
+                             .step = [](const std::string&) { return Result<void>(); }},
+                            test::crookedLens(),
+                            sampleBracket(Effort::Draft),
+                            kDarkFrames);
+}
+
+TEST(LightOnSim, AStepOfFivePerCentInABracketIsFlaggedThereAndNowhereElse) {
+    const auto seen = capturedWith("step=-0.05@20");
+    ASSERT_TRUE(seen) << seen.error().message;
+    ASSERT_EQ(seen->lightSteps.size(), 1U) << described(seen->lightSteps);
+    const LightStep& step = seen->lightSteps.front();
+    EXPECT_NEAR(step.change.offset.size, -0.05, 0.01);
+    EXPECT_NE(described(seen->lightSteps).find("darker than the other"), std::string::npos)
+        << described(seen->lightSteps);
+}
+
+TEST(LightOnSim, WhatIsUsuallyWrongWithARigIsNoStep) {
+    const auto seen = capturedWith("typical");
+    ASSERT_TRUE(seen) << seen.error().message;
+    EXPECT_TRUE(seen->lightSteps.empty()) << described(seen->lightSteps);
 }
 
 /// Root mean square of the map's errors over the disc to 75 degrees, each square pixel alike.

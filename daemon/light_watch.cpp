@@ -1,0 +1,41 @@
+#include "daemon/light_watch.h"
+
+#include <cmath>
+
+#include "proc/core/number_text.h"
+
+namespace gonio::daemon {
+namespace {
+
+constexpr double kSmallest = 0.03;
+
+std::string described(const LightStep& step) {
+    const proc::LightChange& change = step.change;
+    const bool one = change.first == change.last;
+    const std::string which = one ? "frame " + std::to_string(change.first + 1) + " of " +
+                                        std::to_string(step.frames) + " is "
+                                  : "frames " + std::to_string(change.first + 1) + " to " +
+                                        std::to_string(change.last + 1) + " of " +
+                                        std::to_string(step.frames) + " are ";
+    return stateName(step.state) + ": " + which + fixed(100 * std::abs(change.offset.size), 1) +
+           " % (u " + fixed(100 * change.offset.u, 1) + " %) " +
+           (change.offset.size < 0 ? "darker" : "brighter") + " than the others";
+}
+
+}  // namespace
+
+std::optional<LightStep> lightStep(State state,
+                                   const proc::BracketSums& sums,
+                                   const proc::MergedState& merged) {
+    const proc::FrameReport report = proc::frameResiduals(sums, merged, kSmallest);
+    if (!report.change) return std::nullopt;
+    return LightStep{.state = state, .change = *report.change, .frames = report.frames.size()};
+}
+
+std::string described(std::span<const LightStep> steps) {
+    std::string text;
+    for (const LightStep& step : steps) text += (text.empty() ? "" : "; ") + described(step);
+    return text;
+}
+
+}  // namespace gonio::daemon

@@ -1,0 +1,32 @@
+#pragma once
+// Whether the light stayed the same while a bracket was taken: each frame against the others
+// (proc/radiance/frame_residuals.h). A step between two brackets shows in neither.
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "daemon/sequencer.h"
+#include "proc/radiance/frame_residuals.h"
+
+namespace gonio::daemon {
+
+/// Frames of a state that are brighter or darker than its others.
+struct LightStep {
+    State state;
+    proc::LightChange change;
+    std::size_t frames = 0;  ///< of the bracket
+};
+
+/// `merged` is the merge of the sums. Changes below 3 % are let be: an exposure that lasts 0.2 us
+/// longer than granted, or a dimmed level that is off, makes the frames of a group brighter by as
+/// much, and both are in the calibration too.
+[[nodiscard]] std::optional<LightStep> lightStep(State state,
+                                                 const proc::BracketSums& sums,
+                                                 const proc::MergedState& merged);
+
+/// One sentence part for each, such as "LED 2 g: frames 9 to 16 of 16 are 5.0 % (u 0.1 %) darker
+/// than the others"; empty without any.
+[[nodiscard]] std::string described(std::span<const LightStep> steps);
+
+}  // namespace gonio::daemon
