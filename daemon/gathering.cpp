@@ -31,11 +31,11 @@ Result<Processed> Processing::operator()(State state, const std::vector<Frame>& 
         if (Result<void> added = accumulator.add(frame); !added) return added.error();
     Result<proc::MergedState> merged = proc::mergeSums(accumulator.sums());
     if (!merged) return merged.error();
-    std::optional<LightStep> step = lightStep(state, accumulator.sums(), *merged);
+    const std::optional<LightStep> step = lightStep(state, accumulator.sums(), *merged);
     Processed done{
         .signal = binning.bin(*merged),
         .raw = {.merged = std::move(*merged), .bracket = describeBracket(frames, state.band)},
-        .lightStep = std::move(step),
+        .lightStep = step,
         .compute = {}};
     done.compute = processing.elapsed();
     return done;
@@ -64,7 +64,7 @@ Result<void> Gathering::settle() {
     freedom_ += static_cast<double>(done->raw.merged.freedom);
     captured_.signals[static_cast<std::size_t>(state_.led)][index(state_.band)] =
         std::move(done->signal);
-    if (done->lightStep) captured_.lightSteps.push_back(std::move(*done->lightStep));
+    if (done->lightStep) captured_.lightSteps.push_back(*done->lightStep);
     captured_.raw.states.push_back(std::move(done->raw));
     return {};
 }

@@ -68,6 +68,7 @@ public:
         std::vector<double> values = numbers(key);
         std::sort(values.begin(), values.end());
         std::vector<Microseconds> exposures;
+        exposures.reserve(values.size());
         for (double us : values) exposures.emplace_back(static_cast<std::int64_t>(us));
         const bool whole = std::all_of(values.begin(), values.end(), [](double us) {
             return us >= 1 && us <= kLongestUs && us == std::floor(us);
@@ -129,7 +130,7 @@ fs::path configDirectory() {
     if (const char* set = std::getenv("GONIO_CONFIG"); set != nullptr && *set != '\0') return set;
     std::error_code ignored;
     const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
-    const fs::path installed = program.parent_path().parent_path() / "share" / "gonio";
+    fs::path installed = program.parent_path().parent_path() / "share" / "gonio";
     if (fs::is_directory(installed / "rigs", ignored)) return installed;
     return GONIO_CONFIG_DIR;
 }

@@ -120,6 +120,7 @@ Result<std::vector<Frame>> Sequencer::bracket(State state,
 Result<std::vector<proc::DarkFrame>> Sequencer::darks(int frames,
                                                       const std::function<Result<void>()>& done) {
     std::vector<driver::CaptureRequest> requests;
+    requests.reserve(profile_.exposures.size());
     for (Microseconds exposure : profile_.exposures)
         requests.push_back(numbered({.exposure = exposure, .frames = frames}));
     std::vector<proc::DarkFrame> darks;
