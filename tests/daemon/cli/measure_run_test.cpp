@@ -37,7 +37,7 @@ public:
         place("mirror", systematic, seed);
         const Json mirror = (*this)({"calibrate", "mirror"});
         EXPECT_EQ(mirror["schema"], "gonio/calibrate-mirror/1");
-        EXPECT_EQ(mirror["spots"], 20);
+        EXPECT_EQ(mirror["spots"], 33);
         EXPECT_LT(mirror["rms_px"], 0.1);
         place("black", systematic, seed);
         (*this)({"calibrate", "black"});
