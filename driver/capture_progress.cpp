@@ -18,7 +18,7 @@ void CaptureProgress::begin() {
 
 bool CaptureProgress::waitsFor(int frame) const {
     const auto i = static_cast<std::size_t>(frame);
-    return !frames_[i] && !hopeless_[i];
+    return !frames_[i].there && !hopeless_[i];
 }
 
 bool CaptureProgress::waits() const {
@@ -30,19 +30,19 @@ bool CaptureProgress::waits() const {
 
 bool CaptureProgress::soundUpTo(int frame) const {
     if (std::find(hopeless_.begin(), hopeless_.end(), true) != hopeless_.end()) return false;
-    return std::all_of(frames_.begin(), frames_.begin() + frame, [](const auto& there) {
-        return there.has_value();
-    });
+    return std::all_of(
+        frames_.begin(), frames_.begin() + frame, [](const Place& place) { return place.there; });
 }
 
 int CaptureProgress::toArm() const {
-    const auto last = std::find(frames_.rbegin(), frames_.rend(), std::nullopt);
+    const auto last = std::find_if(
+        frames_.rbegin(), frames_.rend(), [](const Place& place) { return !place.there; });
     return static_cast<int>(frames_.rend() - last);
 }
 
 void CaptureProgress::keep(Frame frame) {
     const auto i = static_cast<std::size_t>(frame.index);
-    frames_[i] = std::move(frame);
+    frames_[i] = {.there = true, .frame = std::move(frame)};
 }
 
 void CaptureProgress::discard(int frame) {
@@ -66,10 +66,20 @@ bool CaptureProgress::mayAskAgain(int frame, int most) {
     return true;
 }
 
+Result<void> CaptureProgress::deliver(const FrameSink& sink) {
+    while (delivered_ < frames_.size() && frames_[delivered_].there) {
+        Frame frame = std::move(*frames_[delivered_].frame);
+        frames_[delivered_++].frame.reset();
+        if (Result<void> taken = sink(std::move(frame)); !taken) return taken;
+    }
+    return {};
+}
+
 std::vector<Frame> CaptureProgress::takeFrames() {
     std::vector<Frame> taken;
-    taken.reserve(frames_.size());
-    for (auto& frame : frames_) taken.push_back(std::move(*frame));
+    taken.reserve(frames_.size() - delivered_);
+    for (std::size_t i = delivered_; i < frames_.size(); ++i)
+        taken.push_back(std::move(*frames_[i].frame));
     return taken;
 }
 

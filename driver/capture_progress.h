@@ -2,13 +2,18 @@
 // How far a capture has come, over all its attempts: the frames that are there, what has been asked
 // for again, what is hopeless in this attempt, and why. A frame that is there stays.
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "proc/core/frame.h"
+#include "proc/core/result.h"
 
 namespace gonio::driver {
+
+/// Takes a frame; its error ends the capture.
+using FrameSink = std::function<Result<void>(Frame)>;
 
 class CaptureProgress {
 public:
@@ -35,13 +40,22 @@ public:
 
     /// The first reasons of those that were given, as a list.
     [[nodiscard]] const std::string& evidence() const { return evidence_; }
-    /// Precondition: toArm() == 0.
+    /// Hands over the frames that are there, in the order of their index, up to the first that is
+    /// missing. They count as there ever after.
+    [[nodiscard]] Result<void> deliver(const FrameSink& sink);
+    /// Those that were not delivered. Precondition: toArm() == 0.
     [[nodiscard]] std::vector<Frame> takeFrames();
 
     int discarded = 0, resends = 0, recaptures = 0;
 
 private:
-    std::vector<std::optional<Frame>> frames_;
+    /// Whether it is there, and itself until it is delivered.
+    struct Place {
+        bool there = false;
+        std::optional<Frame> frame{};
+    };
+    std::vector<Place> frames_;
+    std::size_t delivered_ = 0;   ///< so many of the first
     std::vector<int> asked_;      ///< RESENDs of this attempt, by frame
     std::vector<bool> hopeless_;  ///< of this attempt, by frame
     bool failed_ = false;

@@ -17,7 +17,8 @@ constexpr std::uint32_t kCanResend = 1U << 2;  // capability bit
 
 Result<void> Collector::collect(const ArmedCapture& armed,
                                 CaptureProgress& progress,
-                                const std::function<Result<void>()>& exposed) {
+                                const std::function<Result<void>()>& exposed,
+                                const std::function<Result<void>()>& arrived) {
     const Nanoseconds wait = patience(armed.plan.exposure);
     const int last = armed.expected.frames - 1;
     bool told = false;
@@ -30,6 +31,7 @@ Result<void> Collector::collect(const ArmedCapture& armed,
             if (auto done = exposed(); !done) return done;
             deadline_ = link_.clock().now() + wait;  // the chunks have come meanwhile, unread
         }
+        if (auto heard = arrived(); !heard) return heard;
         if (auto asked = repair(armed, progress); !asked) return asked;
         if (!progress.waits()) return {};
         const Nanoseconds left = std::max(Nanoseconds{0}, deadline_ - link_.clock().now());

@@ -25,14 +25,15 @@ public:
     /// Both are borrowed. `assembler` expects the capture already.
     Collector(RigLink& link, Assembler& assembler) : link_(link), assembler_(assembler) {}
 
-    /// Until every frame that `progress` waits for is there or given up. `exposed` is called once,
-    /// when the rig has exposed the last frame and all before it are there: the rig is then idle
-    /// (its chunks are queued after the exposure), however much is still to be sent. It is not
-    /// called in an attempt that fails. An error of the link or of the rig, or of `exposed`, ends
-    /// it.
+    /// Until every frame that `progress` waits for is there or given up. `arrived` is called after
+    /// any of them may have come, and before the end. `exposed` is called once, when the rig has
+    /// exposed the last frame and all before it are there: the rig is then idle (its chunks are
+    /// queued after the exposure), however much is still to be sent. It is not called in an attempt
+    /// that fails. An error of the link or of the rig, or of either, ends it.
     Result<void> collect(const ArmedCapture& armed,
                          CaptureProgress& progress,
-                         const std::function<Result<void>()>& exposed);
+                         const std::function<Result<void>()>& exposed,
+                         const std::function<Result<void>()>& arrived);
 
 private:
     void takeFinished(const FramePlan& plan, CaptureProgress& progress);

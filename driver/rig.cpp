@@ -167,12 +167,15 @@ Result<void> Rig::admit(const CaptureRequest& request, const ArmAhead& ahead) {
     return sound ? idle : sound;
 }
 
-Result<Capture> Rig::capture(const CaptureRequest& request, const ArmAhead& ahead) {
+Result<Capture> Rig::capture(const CaptureRequest& request,
+                             const ArmAhead& ahead,
+                             const FrameSink& sink) {
     const std::string what = describe(request);
     if (auto admitted = admit(request, ahead); !admitted) return admitted.error().in(what);
     const Anomalies before = anomalies();
     CaptureProgress progress(request.frames);
-    Result<void> done = fill(request, ahead, progress);
+    Result<void> done =
+        fill({.request = request, .ahead = ahead, .sink = sink, .progress = progress});
     if (done && !request.keepLit) done = darken();
     if (!done) {
         (void)abort();  // what cannot be reached any more goes dark by its own heartbeat
@@ -198,12 +201,11 @@ Error Rig::failed(const Error& error,
 
 /// Attempts until every frame is there. Early frames cost no recapture, but a rig whose settings
 /// are still not in effect after control_latency attempts does not do what it says.
-Result<void> Rig::fill(const CaptureRequest& request,
-                       const ArmAhead& ahead,
-                       CaptureProgress& progress) {
+Result<void> Rig::fill(const Making& making) {
+    CaptureProgress& progress = making.progress;
     int early = 0;
     while (true) {
-        if (auto tried = attempt(request, ahead, progress); !tried) return tried;
+        if (auto tried = attempt(making); !tried) return tried;
         if (progress.toArm() == 0) return {};
         if (!progress.failed()) {
             if (++early > link_->ident().controlLatency)
@@ -217,17 +219,19 @@ Result<void> Rig::fill(const CaptureRequest& request,
     }
 }
 
-Result<void> Rig::attempt(const CaptureRequest& request,
-                          const ArmAhead& ahead,
-                          CaptureProgress& progress) {
-    progress.begin();
-    const Result<ArmedCapture> armed = takeUpOrArm(request, progress.toArm());
+Result<void> Rig::attempt(const Making& making) {
+    making.progress.begin();
+    const Result<ArmedCapture> armed = takeUpOrArm(making.request, making.progress.toArm());
     if (!armed) return armed.error();
-    return Collector(*link_, assembler_).collect(*armed, progress, [&]() -> Result<void> {
-        const bool overlaps = request.keepLit && link_->ident().frameRam >= kFramesToOverlap;
-        if (!ahead.next || !overlaps) return {};
-        return armAhead(*ahead.next);
-    });
+    const auto exposed = [&]() -> Result<void> {
+        const bool overlaps = making.request.keepLit && link_->ident().frameRam >= kFramesToOverlap;
+        if (!making.ahead.next || !overlaps) return {};
+        return armAhead(*making.ahead.next);
+    };
+    const auto arrived = [&]() -> Result<void> {
+        return making.sink ? making.progress.deliver(making.sink) : Result<void>();
+    };
+    return Collector(*link_, assembler_).collect(*armed, making.progress, exposed, arrived);
 }
 
 /// What was armed ahead is this request, or admit() would have aborted it; a later attempt finds

@@ -22,6 +22,7 @@
 
 #include "driver/assembler.h"
 #include "driver/capture_ids.h"
+#include "driver/capture_progress.h"
 #include "driver/collector.h"
 #include "driver/link.h"
 #include "proc/core/frame.h"
@@ -59,7 +60,8 @@ struct ArmAhead {
     std::optional<CaptureRequest> next{};
 };
 
-/// Exactly the frames asked for, in order of their index, and what it took to get them.
+/// Exactly the frames asked for, in order of their index, and what it took to get them. Frames that
+/// went to a sink are not among them.
 struct Capture {
     std::vector<Frame> frames;
     Anomalies anomalies;
@@ -91,7 +93,11 @@ public:
     /// configure() and close(), abort it; nothing of it is ever seen. After a request that is not
     /// to be kept lit nothing is armed, nor on a rig that keeps fewer than three frames for RESEND,
     /// nor what the rig refuses: its own capture() then says why.
-    Result<Capture> capture(const CaptureRequest& request, const ArmAhead& ahead = {});
+    /// A `sink` is given each frame as soon as it and those before it are there, in the order of
+    /// their index, so that a capture of many frames needs the memory of few.
+    Result<Capture> capture(const CaptureRequest& request,
+                            const ArmAhead& ahead = {},
+                            const FrameSink& sink = {});
     /// All LEDs dark.
     Result<void> darken();
     Result<void> keepAlive() { return link_->keepAlive(); }
@@ -120,12 +126,15 @@ private:
     [[nodiscard]] Result<void> check(const CaptureRequest& request) const;
     [[nodiscard]] Result<void> check(const ArmAhead& ahead) const;
     Result<void> admit(const CaptureRequest& request, const ArmAhead& ahead);
-    Result<void> fill(const CaptureRequest& request,
-                      const ArmAhead& ahead,
-                      CaptureProgress& progress);
-    Result<void> attempt(const CaptureRequest& request,
-                         const ArmAhead& ahead,
-                         CaptureProgress& progress);
+    /// What a capture is made of, through all its attempts.
+    struct Making {
+        const CaptureRequest& request;
+        const ArmAhead& ahead;
+        const FrameSink& sink;
+        CaptureProgress& progress;
+    };
+    Result<void> fill(const Making& making);
+    Result<void> attempt(const Making& making);
     Result<ArmedCapture> takeUpOrArm(const CaptureRequest& request, int frames);
     Result<void> armAhead(const CaptureRequest& request);
     Result<ArmedCapture> arm(const CaptureRequest& request, int frames);

@@ -145,6 +145,40 @@ TEST(Rig, CapturesAgainWhenResendsDoNotHelp) {
     EXPECT_EQ((*capture)[1].captureId, 0x50002U) << "with a new capture_id";
 }
 
+TEST(Rig, ASinkIsGivenEachFrameOnceInOrderThroughAllRepairs) {
+    for (const int sends : {0, 1, 3}) {  // undisturbed, asked for again, captured again
+        ScriptedRig device;
+        Rig rig = configured(device);
+        device.onStream = first(sends, [](std::vector<Bytes>& chunks) {
+            const std::size_t at = chunks.size() > 1 ? kChunks + 2 : 0;
+            chunks[at].back() ^= 1;
+        });
+        Capture given;
+        const auto capture = rig.capture(kRequest, {}, [&](Frame frame) -> Result<void> {
+            given.frames.push_back(std::move(frame));
+            return {};
+        });
+        ASSERT_TRUE(capture) << capture.error().message;
+        EXPECT_EQ(capture->size(), 0U);
+        expectUndisturbed(given, kRequest);
+    }
+}
+
+TEST(Rig, AnErrorOfTheSinkEndsTheCapture) {
+    ScriptedRig device;
+    Rig rig = configured(device);
+    int given = 0;
+    const auto capture = rig.capture(kRequest, {}, [&](const Frame&) -> Result<void> {
+        if (++given < 2) return {};
+        return Error{ErrorKind::Quality, "no dark frame"};
+    });
+    ASSERT_FALSE(capture);
+    EXPECT_EQ(capture.error().kind, ErrorKind::Quality);
+    EXPECT_TRUE(mentions(capture.error(), "no dark frame")) << capture.error().message;
+    EXPECT_EQ(given, 2);
+    EXPECT_TRUE(rig.capture(kRequest)) << "the rig is as good as before";
+}
+
 TEST(Rig, CapturesAgainWhenTheFrameIsGone) {
     ScriptedRig device;
     Rig rig = configured(device);
