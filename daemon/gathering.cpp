@@ -5,52 +5,67 @@
 namespace gonio::daemon {
 namespace {
 
-/// The bracket's captures, in the order in which they were taken.
-std::vector<proc::RawExposure> describeBracket(const std::vector<Frame>& frames, Band band) {
-    std::vector<proc::RawExposure> list;
-    for (const Frame& frame : frames) {
-        if (list.empty() || list.back().captureId != frame.captureId) {
-            list.push_back({.captureId = frame.captureId,
-                            .granted = frame.exposure.granted,
-                            .level = frame.levels[band],
-                            .frames = 0,
-                            .blackLevel = frame.blackLevel,
-                            .celsius = frame.celsius});
-        }
-        ++list.back().frames;
+void describe(const Frame& frame, Band band, std::vector<proc::RawExposure>& bracket) {
+    if (bracket.empty() || bracket.back().captureId != frame.captureId) {
+        bracket.push_back({.captureId = frame.captureId,
+                           .granted = frame.exposure.granted,
+                           .level = frame.levels[band],
+                           .frames = 0,
+                           .blackLevel = frame.blackLevel,
+                           .celsius = frame.celsius});
     }
-    return list;
+    ++bracket.back().frames;
 }
 
 }  // namespace
 
-Result<Processed> Processing::operator()(State state, const std::vector<Frame>& frames) const {
+Result<Processed> Processing::operator()(State state, const proc::BracketSums& sums) const {
     const Stopwatch processing(clock);
-    proc::MergeAccumulator accumulator(state.band, darks, noise);
-    for (const Frame& frame : frames)
-        if (Result<void> added = accumulator.add(frame); !added) return added.error();
-    Result<proc::MergedState> merged = proc::mergeSums(accumulator.sums());
+    Result<proc::MergedState> merged = proc::mergeSums(sums);
     if (!merged) return merged.error();
-    const std::optional<LightStep> step = lightStep(state, accumulator.sums(), *merged);
-    Processed done{
-        .signal = binning.bin(*merged),
-        .raw = {.merged = std::move(*merged), .bracket = describeBracket(frames, state.band)},
-        .lightStep = step,
-        .compute = {}};
+    const std::optional<LightStep> step = lightStep(state, sums, *merged);
+    Processed done{.signal = binning.bin(*merged),
+                   .raw = {.merged = std::move(*merged), .bracket = {}},
+                   .lightStep = step,
+                   .compute = {}};
     done.compute = processing.elapsed();
     return done;
 }
 
 Gathering::Gathering(driver::Rig& rig, const Processing& processing)
-    : rig_(rig), processing_(processing) {
+    : rig_(rig),
+      processing_(processing),
+      brackets_{{{{}, {Band::R, processing.darks, processing.noise}, {}},
+                 {{}, {Band::R, processing.darks, processing.noise}, {}}}} {
     captured_.signals.resize(rig.identify().ledAngles.size());
 }
 
-Result<void> Gathering::add(State state, std::vector<Frame> frames) {
+void Gathering::begin(State state) {
+    Bracket& bracket = atHand();
+    bracket.state = state;
+    bracket.sums.restart(state.band);
+    bracket.exposures.clear();
+}
+
+Result<void> Gathering::add(const Frame& frame) {
+    const Stopwatch adding(processing_.clock);
+    Bracket& bracket = atHand();
+    describe(frame, bracket.state.band, bracket.exposures);
+    Result<void> added = bracket.sums.add(frame);
+    adding_ += adding.elapsed();
+    return added;
+}
+
+Result<void> Gathering::end() {
     if (Result<void> last = settle(); !last) return last;
-    state_ = state;
-    running_.emplace(
-        [this, state, frames = std::move(frames)] { return processing_(state, frames); });
+    captured_.compute += std::exchange(adding_, Seconds(0));
+    const Bracket& bracket = atHand();
+    ++states_;
+    running_.emplace([this, &bracket]() -> Result<Processed> {
+        Result<Processed> done = processing_(bracket.state, bracket.sums.sums());
+        if (done) done->raw.bracket = bracket.exposures;
+        return done;
+    });
     return {};
 }
 
@@ -60,9 +75,10 @@ Result<void> Gathering::settle() {
     running_.reset();
     if (!done) return done.error();
     captured_.compute += done->compute;
-    chiSquare_ += done->raw.merged.chiSquare;
-    freedom_ += static_cast<double>(done->raw.merged.freedom);
-    captured_.signals[static_cast<std::size_t>(state_.led)][index(state_.band)] =
+    const proc::MergedState& merged = done->raw.merged;
+    chiSquare_ += merged.chiSquare;
+    freedom_ += static_cast<double>(merged.freedom);
+    captured_.signals[static_cast<std::size_t>(merged.led)][index(merged.band)] =
         std::move(done->signal);
     if (done->lightStep) captured_.lightSteps.push_back(*done->lightStep);
     captured_.raw.states.push_back(std::move(done->raw));

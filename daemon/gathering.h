@@ -1,8 +1,10 @@
 #pragma once
-// The states of a placement, each merged and binned in another thread while the next is captured.
-// At most one is being processed: a second waits for it, and keeps the rig alive meanwhile. States
-// are added up in the order in which they came, so that the sum is that of one after the other.
+// The states of a placement. The frames of the one at hand are added up as they arrive; once it is
+// complete it is merged and binned in another thread, beside the frames of the next. At most one is
+// being processed: a second waits for it, and keeps the rig alive meanwhile. States are added up in
+// the order in which they came, so that the sum is that of one after the other.
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -29,7 +31,8 @@ struct Processing {
     const proc::SensorNoise& noise;
     const Clock& clock;
 
-    [[nodiscard]] Result<Processed> operator()(State state, const std::vector<Frame>& frames) const;
+    /// Without what describes the bracket.
+    [[nodiscard]] Result<Processed> operator()(State state, const proc::BracketSums& sums) const;
 };
 
 class Gathering {
@@ -39,19 +42,31 @@ public:
     Gathering(const Gathering&) = delete;
     Gathering& operator=(const Gathering&) = delete;
 
-    /// Begins to process a state's bracket; an error is that of the state before.
-    Result<void> add(State state, std::vector<Frame> frames);
+    /// Another state, whose frames come next.
+    void begin(State state);
+    [[nodiscard]] Result<void> add(const Frame& frame);
+    /// The state is complete; an error is that of the one before.
+    [[nodiscard]] Result<void> end();
     /// All that was added, the last state waited for.
-    Result<Captured> finish();
+    [[nodiscard]] Result<Captured> finish();
 
 private:
+    /// A state and its frames so far. Each keeps its memory for the next but one.
+    struct Bracket {
+        State state;
+        proc::MergeAccumulator sums;
+        std::vector<proc::RawExposure> exposures;  ///< in the order in which they were taken
+    };
+    [[nodiscard]] Bracket& atHand() { return brackets_[states_ % brackets_.size()]; }
     Result<void> settle();
 
     driver::Rig& rig_;
     const Processing processing_;
+    std::array<Bracket, 2> brackets_;
+    std::size_t states_ = 0;  ///< complete ones
+    Seconds adding_{0};       ///< frames, of the state at hand
     Captured captured_;
     double chiSquare_ = 0, freedom_ = 0;
-    State state_;  ///< that is being processed
     std::optional<Alongside<Processed>> running_;
 };
 

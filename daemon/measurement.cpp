@@ -27,12 +27,7 @@ constexpr double kWhiteOverBlack = 50;
 Direction lightAt(Radians incidence) { return Direction::fromSpherical(incidence, Radians(0)); }
 
 Result<proc::DarkLibrary> takeDarks(const Bench& bench, Sequencer& sequencer, int frames) {
-    Result<std::vector<proc::DarkFrame>> darks =
-        sequencer.darks(frames, [&] { return bench.step("dark frames"); });
-    if (!darks) return darks.error();
-    proc::DarkLibrary library;
-    for (proc::DarkFrame& dark : *darks) library.add(std::move(dark));
-    return library;
+    return sequencer.darks(frames, [&] { return bench.step("dark frames"); });
 }
 
 double medianSignal(const proc::CellSignal& signal) {
@@ -100,7 +95,7 @@ Result<Captured> capturePlacement(const Bench& bench,
     const Result<Window> window = configureWindow(bench.rig);
     if (!window) return window.error();
     Sequencer sequencer(bench.rig, bench.profile, bench.nextPlanStep, bench.alive);
-    const Result<proc::DarkLibrary> darks = takeDarks(bench, sequencer, darkFrames);
+    Result<proc::DarkLibrary> darks = takeDarks(bench, sequencer, darkFrames);
     if (!darks) return darks.error();
     const Stopwatch preparing(bench.clock);
     const auto binning = alongside(bench.rig, [&] { return proc::Binning(lens, *window, kField); });
@@ -112,13 +107,17 @@ Result<Captured> capturePlacement(const Bench& bench,
     const std::vector<State> states = sequencer.states();
     for (std::size_t i = 0; i < states.size(); ++i) {
         const auto then = i + 1 < states.size() ? std::optional(states[i + 1]) : std::nullopt;
-        Result<std::vector<Frame>> frames = sequencer.bracket(states[i], plan, then);
-        if (!frames) return frames.error();
-        if (Result<void> on = gathering.add(states[i], std::move(*frames)); !on) return on.error();
+        gathering.begin(states[i]);
+        const Result<void> taken = sequencer.bracket(
+            states[i], plan, [&](const Frame& frame) { return gathering.add(frame); }, then);
+        if (!taken) return taken.error();
+        if (Result<void> on = gathering.end(); !on) return on.error();
         if (Result<void> on = bench.step(stateName(states[i])); !on) return on.error();
     }
     Result<Captured> captured = gathering.finish();
-    if (captured) captured->compute += prepared;
+    if (!captured) return captured;
+    captured->compute += prepared;
+    captured->darks = std::move(*darks);
     return captured;
 }
 

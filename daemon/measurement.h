@@ -1,12 +1,12 @@
 #pragma once
-// Whole measurements on an opened rig: the mirror's lens map, a reference's signals, a sample's f.
-// Frames are merged and binned state by state, beside the captures of the next state, so that a
-// measurement never holds more than two brackets: of eight captures at most, 2 MB a frame, thus 32
-// MB with one frame each and 256 MB with the eight of Effort::Reference. The result is that of
-// merging one after the other. However a measurement ends, the LEDs are dark and no thread is left.
+// Whole measurements on an opened rig: the mirror's lens map, a reference's signals, a sample's f;
+// how a sample is captured by a plan is planned_run.h's. Frames are added up as they arrive, and
+// merged and binned state by state beside the captures of the next. The result is that of merging
+// one after the other. However a measurement ends, the LEDs are dark and no thread is left.
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "daemon/light_watch.h"
@@ -18,6 +18,7 @@
 #include "proc/calibrate/two_point.h"
 #include "proc/formats/graw_exr.h"
 #include "proc/optics/mirror.h"
+#include "proc/plan/progress.h"
 
 namespace gonio::daemon {
 
@@ -31,6 +32,8 @@ struct Bench {
     std::function<Result<void>(const std::string&)> step;
     /// It goes on: every few seconds at least, between two steps.
     std::function<void()> alive = [] {};
+    /// How a planned run stands against its plan, after each capture.
+    std::function<void(const proc::Progress&)> outlook = [](const proc::Progress&) {};
 };
 
 /// The window that is read: the square in the middle of the sensor.
@@ -44,12 +47,20 @@ struct Bench {
 using PlaceMirror = std::function<Result<void>(const proc::Wedge&)>;
 [[nodiscard]] Result<LensRecord> measureLens(const Bench& bench, const PlaceMirror& place);
 
+/// A bracket that was taken twice, at the begin and at the end of a capture.
+struct Repeat {
+    State state;
+    proc::CellSignal first, last;
+};
+
 /// All states of what lies under the rig.
 struct Captured {
     PlacementSignals signals;
     proc::RawCapture raw;
     std::vector<LightStep> lightSteps;  ///< in the order of the states
     double chiSquarePerFreedom = 0;     ///< of all merges; 1 where noise alone differs
+    proc::DarkLibrary darks;            ///< with the sample under the rig
+    std::optional<Repeat> repeat{};     ///< of a planned run
     Seconds compute{0};  ///< of merging and binning, though the rig went on meanwhile
 };
 [[nodiscard]] Result<Captured> measurePlacement(const Bench& bench,

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <utility>
 
 namespace gonio::daemon {
@@ -11,10 +10,11 @@ namespace {
 constexpr double kFullLevel = 65535;
 
 /// Without its plan step.
-driver::CaptureRequest toTake(State state, const Shot& shot, int frames) {
+driver::CaptureRequest toTake(std::optional<State> state, const Shot& shot, int frames) {
+    if (!state) return {.exposure = shot.exposure, .frames = frames};
     const auto drive = static_cast<std::uint16_t>(std::lround(shot.level * kFullLevel));
-    return {.led = state.led,
-            .levels = LedLevels::only(state.band, std::max<std::uint16_t>(1, drive)),
+    return {.led = state->led,
+            .levels = LedLevels::only(state->band, std::max<std::uint16_t>(1, drive)),
             .exposure = shot.exposure,
             .frames = frames};
 }
@@ -23,15 +23,6 @@ driver::CaptureRequest toTake(State state, const Shot& shot, int frames) {
 
 std::string stateName(State state) {
     return "LED " + std::to_string(state.led) + " " + std::string(letter(state.band));
-}
-
-BracketPlan sampleBracket(Effort effort) {
-    switch (effort) {
-        case Effort::Draft: return {.frames = 1, .longest = 4};
-        case Effort::Standard: return {.frames = 1};
-        case Effort::Reference: return {.frames = 8};
-    }
-    return {};
 }
 
 Sequencer::Sequencer(driver::Rig& rig,
@@ -74,27 +65,28 @@ driver::CaptureRequest Sequencer::prepare(State state, const BracketPlan& plan) 
     return *prepared_;
 }
 
-Result<driver::Capture> Sequencer::take(const driver::CaptureRequest& request,
-                                        const driver::ArmAhead& ahead) {
+Result<driver::Capture> Sequencer::capture(const driver::CaptureRequest& request,
+                                           const driver::ArmAhead& ahead,
+                                           const driver::FrameSink& sink) {
     alive_();
-    return rig_.capture(request, ahead);
+    return rig_.capture(request, ahead, sink);
 }
 
 Result<std::vector<Frame>> Sequencer::expose(State state,
                                              double level,
                                              Microseconds exposure,
                                              int frames) {
-    Result<driver::Capture> capture =
-        take(numbered(toTake(state, {.level = level, .exposure = exposure}, frames)));
-    if (!capture) return capture.error();
-    return std::move(capture->frames);
+    Result<driver::Capture> taken =
+        capture(numbered(toTake(state, {.level = level, .exposure = exposure}, frames)));
+    if (!taken) return taken.error();
+    return std::move(taken->frames);
 }
 
-Result<std::vector<Frame>> Sequencer::bracket(State state,
-                                              const BracketPlan& plan,
-                                              std::optional<State> then) {
+Result<void> Sequencer::bracket(State state,
+                                const BracketPlan& plan,
+                                const driver::FrameSink& sink,
+                                std::optional<State> then) {
     BracketLadder ladder(profile_, plan);
-    std::vector<Frame> all;
     NextShot now = ladder.advance();
     driver::CaptureRequest wanted = begin(toTake(state, now.shot, plan.frames));
     while (now.outlook == Outlook::Shot) {
@@ -103,10 +95,11 @@ Result<std::vector<Frame>> Sequencer::bracket(State state,
         if (next.outlook == Outlook::Shot)
             ahead.next = numbered(toTake(state, next.shot, plan.frames));
         if (next.outlook == Outlook::Over && then) ahead.next = prepare(*then, plan);
-        Result<driver::Capture> capture = take(wanted, ahead);
-        if (!capture) return capture.error();
-        ladder.seen(capture->frames);
-        std::move(capture->frames.begin(), capture->frames.end(), std::back_inserter(all));
+        Result<driver::Capture> taken = capture(wanted, ahead);
+        if (!taken) return taken.error();
+        ladder.seen(taken->frames);
+        for (Frame& frame : taken->frames)
+            if (Result<void> given = sink(std::move(frame)); !given) return given;
         if (next.outlook == Outlook::Shot) {
             wanted = *ahead.next;
         } else if (next = ladder.advance(); next.outlook == Outlook::Shot) {
@@ -114,27 +107,43 @@ Result<std::vector<Frame>> Sequencer::bracket(State state,
         }
         now = next;
     }
-    return all;
+    return {};
 }
 
-Result<std::vector<proc::DarkFrame>> Sequencer::darks(int frames,
-                                                      const std::function<Result<void>()>& done) {
+Result<void> Sequencer::take(std::span<const KnownShot> shots, const ShotSink& sink) {
     std::vector<driver::CaptureRequest> requests;
-    requests.reserve(profile_.exposures.size());
-    for (Microseconds exposure : profile_.exposures)
-        requests.push_back(numbered({.exposure = exposure, .frames = frames}));
-    std::vector<proc::DarkFrame> darks;
+    requests.reserve(shots.size());
+    for (const KnownShot& known : shots)
+        requests.push_back(numbered(toTake(known.state, known.shot, known.frames)));
     for (std::size_t i = 0; i < requests.size(); ++i) {
         driver::ArmAhead ahead;
         if (i + 1 < requests.size()) ahead.next = requests[i + 1];
-        const auto taken = take(requests[i], ahead);
+        const auto taken = capture(
+            requests[i], ahead, [&](Frame frame) { return sink.frame(i, std::move(frame)); });
         if (!taken) return taken.error();
-        Result<proc::DarkFrame> dark = proc::averageDark(taken->frames, profile_.noise);
-        if (!dark) return dark.error();
-        darks.push_back(std::move(*dark));
-        if (Result<void> on = done(); !on) return on.error();
+        if (Result<void> on = sink.done(i); !on) return on;
     }
-    return darks;
+    return {};
+}
+
+Result<proc::DarkLibrary> Sequencer::darks(int frames, const std::function<Result<void>()>& done) {
+    std::vector<KnownShot> shots;
+    for (const Microseconds exposure : profile_.exposures)
+        shots.push_back({.state = {}, .shot = {.exposure = exposure}, .frames = frames});
+    proc::DarkLibrary library;
+    proc::DarkAverage average(profile_.noise);
+    const Result<void> taken =
+        take(shots,
+             {.frame = [&](std::size_t, const Frame& frame) { return average.add(frame); },
+              .done = [&](std::size_t) -> Result<void> {
+                  Result<proc::DarkFrame> dark = average.mean();
+                  if (!dark) return dark.error();
+                  library.add(std::move(*dark));
+                  average = proc::DarkAverage(profile_.noise);
+                  return done();
+              }});
+    if (!taken) return taken.error();
+    return library;
 }
 
 }  // namespace gonio::daemon

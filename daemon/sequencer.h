@@ -1,25 +1,23 @@
 #pragma once
-// Takes the frames of whole measurements: dark ladders, brackets of one state (bracket_ladder.h),
-// all states of a placement. The next capture is armed ahead where it is known or foreseen, so that
-// exposures overlap transfers. Each capture has a plan step of its own, so that no two share their
-// noise, and the same placement always makes the same captures.
+// Takes the frames of whole measurements: brackets of one state that find their own way
+// (bracket_ladder.h), and lists of shots that are known beforehand. The next capture is armed ahead
+// where it is known or foreseen, so that exposures overlap transfers. Each capture has a plan step
+// of its own, so that no two share their noise, and the same placement always makes the same
+// captures. Frames are handed on as they arrive.
 
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "daemon/bracket_ladder.h"
 #include "daemon/profile.h"
 #include "driver/rig.h"
-#include "proc/core/effort.h"
 #include "proc/radiance/dark.h"
 
 namespace gonio::daemon {
-
-/// The bracket that an effort asks for of a sample.
-[[nodiscard]] BracketPlan sampleBracket(Effort effort);
 
 struct State {
     int led = 0;
@@ -28,6 +26,21 @@ struct State {
 
 /// "LED 2 g".
 [[nodiscard]] std::string stateName(State state);
+
+/// A capture that is known before the one before it is seen.
+struct KnownShot {
+    std::optional<State> state{};  ///< empty: dark
+    Shot shot;
+    int frames = 1;
+};
+
+/// What becomes of the frames of a list of shots, each named by its place in the list.
+struct ShotSink {
+    /// Each frame, as it arrives. An error ends the list.
+    std::function<Result<void>(std::size_t shot, Frame frame)> frame;
+    /// All frames of a shot are there. An error ends the list.
+    std::function<Result<void>(std::size_t shot)> done = [](std::size_t) { return Result<void>(); };
+};
 
 class Sequencer {
 public:
@@ -43,9 +56,12 @@ public:
     [[nodiscard]] std::vector<State> states() const;
     /// All frames of one state's bracket. The first capture of `then`, if its bracket comes next
     /// and by the same plan, is armed ahead with the last of this one.
-    [[nodiscard]] Result<std::vector<Frame>> bracket(State state,
-                                                     const BracketPlan& plan,
-                                                     std::optional<State> then = {});
+    [[nodiscard]] Result<void> bracket(State state,
+                                       const BracketPlan& plan,
+                                       const driver::FrameSink& sink,
+                                       std::optional<State> then = {});
+    /// One shot after the other.
+    [[nodiscard]] Result<void> take(std::span<const KnownShot> shots, const ShotSink& sink);
     /// `frames` of one level and exposure.
     [[nodiscard]] Result<std::vector<Frame>> expose(State state,
                                                     double level,
@@ -53,15 +69,16 @@ public:
                                                     int frames);
     /// Mean dark frames for the whole ladder of exposures; `done` is called after each, and an
     /// error that it returns ends the ladder.
-    [[nodiscard]] Result<std::vector<proc::DarkFrame>> darks(
-        int frames, const std::function<Result<void>()>& done);
+    [[nodiscard]] Result<proc::DarkLibrary> darks(int frames,
+                                                  const std::function<Result<void>()>& done);
 
 private:
     [[nodiscard]] driver::CaptureRequest numbered(driver::CaptureRequest request);
     [[nodiscard]] driver::CaptureRequest begin(driver::CaptureRequest first);
     [[nodiscard]] driver::CaptureRequest prepare(State state, const BracketPlan& plan);
-    [[nodiscard]] Result<driver::Capture> take(const driver::CaptureRequest& request,
-                                               const driver::ArmAhead& ahead = {});
+    [[nodiscard]] Result<driver::Capture> capture(const driver::CaptureRequest& request,
+                                                  const driver::ArmAhead& ahead = {},
+                                                  const driver::FrameSink& sink = {});
 
     driver::Rig& rig_;
     const RigProfile& profile_;

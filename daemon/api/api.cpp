@@ -270,14 +270,18 @@ Result<ApiReply> postJob(const Call& call) {
                    .force = fields.flag("force"),
                    .calibration = fields.text("calibration")};
     job.limit = fields.number("limit").value_or(job.limit);
+    const std::optional<double> target = fields.number("target_uncertainty");
+    const std::optional<double> budget = fields.number("time_budget_s");
     if (Result<void> good = fields.verdict(); !good) return good.error();
     if (!kind) return kind.error();
     job.kind = *kind;
     if (effortName) {
         const Result<Effort> effort = parseEffort(*effortName);
         if (!effort) return effort.error();
-        job.effort = *effort;
+        job.goal.effort = *effort;
     }
+    job.goal.targetUncertainty = target;
+    if (budget) job.goal.timeBudget = Seconds(*budget);
     const Result<JobRecord> begun = call.engine.submit(job);
     if (!begun) return begun.error();
     return reply("job", toJson(*begun), kAccepted);

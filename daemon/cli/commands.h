@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "daemon/capture_goal.h"
 #include "daemon/engine/sim_port.h"
-#include "proc/core/effort.h"
 #include "proc/core/result.h"
 
 namespace gonio::daemon {
@@ -47,12 +47,15 @@ Result<void> verifyWhite(const CommonOptions& common, const VerifyOptions& optio
 
 struct MeasureOptions {
     std::string name;
-    Effort effort = Effort::Standard;
+    CaptureGoal goal;
     std::string notes;
     bool force = false;            ///< with calibrations that are no longer good, too
     std::filesystem::path output;  ///< a copy of the .gonio; empty: the store only
 };
 Result<void> measure(const CommonOptions& common, const MeasureOptions& options);
+
+/// What measuring the sample under the rig would take and achieve; takes its pilots only.
+Result<void> plan(const CommonOptions& common, const CaptureGoal& goal);
 
 struct RecalibrateOptions {
     std::string name;

@@ -3,10 +3,12 @@
 
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "daemon/cli/answer.h"
 #include "daemon/cli/commands.h"
 #include "daemon/cli/followed_job.h"
+#include "daemon/cli/output.h"
 #include "proc/core/number_text.h"
 #include "proc/formats/file_bytes.h"
 
@@ -39,8 +41,45 @@ std::string measuredLine(const Json& done) {
     return text(done, "name") + ": " + std::to_string(done.at("measured_cells").get<int>()) +
            " BRDF samples, median uncertainty " +
            percent(done.at("median_relative_uncertainty").get<double>()) + " (k = 1), " +
-           seconds(done, "rig_seconds") + " on the rig, " + seconds(done, "compute_seconds") +
-           " computing; " + text(done, "file");
+           seconds(done, "rig_seconds") + " on the rig (planned " +
+           fixed(done.at("planned").at("seconds").get<double>(), 1) + " s), " +
+           seconds(done, "compute_seconds") + " computing; " + text(done, "file");
+}
+
+Json toJson(const CaptureGoal& goal) {
+    if (goal.targetUncertainty) return {{"target_uncertainty", *goal.targetUncertainty}};
+    if (goal.timeBudget) return {{"time_budget_s", goal.timeBudget->count()}};
+    return {{"effort", std::string(name(goal.effort))}};
+}
+
+std::string percentOr(const Json& fraction) {
+    return fraction.is_number() ? percent(fraction.get<double>()) : "-";
+}
+
+/// "random, systematic, total" by rows of worst, 95th percentile and median.
+std::vector<std::vector<std::string>> predictionRows(const Json& prediction) {
+    std::vector<std::vector<std::string>> rows{{"", "median", "95 % of cells", "worst"}};
+    for (const std::string part : {"random", "systematic", "total"}) {
+        const Json& spread = prediction.at(part);
+        rows.push_back({part,
+                        percentOr(spread.at("median")),
+                        percentOr(spread.at("p95")),
+                        percentOr(spread.at("worst"))});
+    }
+    return rows;
+}
+
+void printPlan(const Json& plan) {
+    const Json& seconds = plan.at("seconds");
+    std::cout << text(plan, "goal") << ": " << fixed(seconds.at("total").get<double>(), 2)
+              << " s on the rig (pilots " << fixed(seconds.at("pilot").get<double>(), 2)
+              << ", dark frames " << fixed(seconds.at("dark").get<double>(), 2) << "), "
+              << plan.at("frames").get<int>() << " frames of the sample; the least that physics "
+              << "allows: " << fixed(plan.at("cramer_rao_seconds").get<double>(), 2) << " s\n"
+              << "predicted uncertainty, k = 1, of " << plan.at("predicted").at("cells").get<int>()
+              << " cells with f of at least 0.001 / sr:\n";
+    printTable(predictionRows(plan.at("predicted")));
+    for (const Json& note : plan.at("notes")) std::cout << note.get<std::string>() << "\n";
 }
 
 std::string recalibratedLine(const Json& done) {
@@ -88,16 +127,24 @@ Result<void> verifyWhite(const CommonOptions& common, const VerifyOptions& optio
 
 Result<void> measure(const CommonOptions& common, const MeasureOptions& options) {
     const DaemonClient client(common.socketPath());
-    const Json request{{"kind", "measure"},
-                       {"name", options.name},
-                       {"effort", std::string(name(options.effort))},
-                       {"notes", options.notes},
-                       {"force", options.force}};
+    Json request{{"kind", "measure"},
+                 {"name", options.name},
+                 {"notes", options.notes},
+                 {"force", options.force}};
+    request.update(toJson(options.goal));
     const auto done = FollowedJob(common, client, options.name)
                           .run(request.dump(-1, ' ', false, Json::error_handler_t::replace));
     if (!done) return done.error();
     if (Result<void> copied = copy(client, options.name, options.output); !copied) return copied;
     return shown(common, done, [](const Json& json) { std::cout << measuredLine(json) << "\n"; });
+}
+
+Result<void> plan(const CommonOptions& common, const CaptureGoal& goal) {
+    const DaemonClient client(common.socketPath());
+    Json request{{"kind", "plan"}};
+    request.update(toJson(goal));
+    const auto done = FollowedJob(common, client, "plan").run(request.dump());
+    return shown(common, done, printPlan);
 }
 
 Result<void> recalibrate(const CommonOptions& common, const RecalibrateOptions& options) {

@@ -7,6 +7,7 @@
 
 #include "daemon/api/socket_path.h"
 #include "daemon/cli/commands.h"
+#include "daemon/cli/goal_options.h"
 #include "daemon/cli/interrupt.h"
 #include "daemon/store.h"
 #include "proc/core/log.h"
@@ -17,14 +18,6 @@ namespace {
 
 constexpr int kUsage = 2;
 constexpr int kInterrupted = 130;
-
-/// "1%" -> 0.01.
-std::optional<double> parsePercent(const std::string& text) {
-    if (!text.ends_with('%')) return std::nullopt;
-    const auto number = parseDouble(std::string_view(text).substr(0, text.size() - 1));
-    if (!number || !(*number > 0 && *number <= 100)) return std::nullopt;
-    return *number / 100;
-}
 
 /// The command that the command line chose.
 using Command = std::function<Result<void>()>;
@@ -41,7 +34,7 @@ struct Program {
     RecalibrateOptions recalibrate;
     SessionOptions session;
     WatchOptions watch;
-    std::string effort = "standard";
+    GoalOptions goal;
     std::string infoFile;
     EvalOptions eval;
     ConvertOptions convert;
@@ -58,6 +51,7 @@ struct Program {
                       Command run);
     void addSim();
     void addCalibration();
+    void addGoal(CLI::App* sub);
     void addMeasuring();
     void addDaemon();
     void addSession();
@@ -144,20 +138,38 @@ void Program::addCalibration() {
     sub->add_option("--limit", limit, "largest change that passes, such as 1%");
 }
 
+void Program::addGoal(CLI::App* sub) {
+    sub->add_option("--effort", goal.effort, "draft, standard (unless said) or reference");
+    sub->add_option("--target-uncertainty",
+                    goal.targetUncertainty,
+                    "random, relative, 1 sigma, of each cell, such as 1%");
+    sub->add_option("--time-budget", goal.timeBudget, "on the rig, all told, such as 5s");
+}
+
 void Program::addMeasuring() {
     CLI::App* sub =
         command(app, "measure", "measure what lies under the rig", [this]() -> Result<void> {
-            const Result<Effort> effortValue = parseEffort(effort);
-            if (!effortValue) return effortValue.error();
-            measure.effort = *effortValue;
+            const Result<CaptureGoal> wanted = goal.parse();
+            if (!wanted) return wanted.error();
+            measure.goal = *wanted;
             if (Result<void> good = checkSampleName(measure.name); !good) return good;
             return daemon::measure(common, measure);
         });
     sub->add_option("name", measure.name, "the sample's name")->required();
-    sub->add_option("--effort", effort, "draft, standard or reference");
+    addGoal(sub);
     sub->add_option("--notes", measure.notes, "operator's notes, kept with the sample");
     sub->add_flag("--force", measure.force, "with calibrations that are no longer good, too");
     sub->add_option("-o,--output", measure.output, "also write the .gonio here");
+
+    sub = command(app,
+                  "plan",
+                  "what measuring the sample under the rig would take and achieve",
+                  [this]() -> Result<void> {
+                      const Result<CaptureGoal> wanted = goal.parse();
+                      if (!wanted) return wanted.error();
+                      return daemon::plan(common, *wanted);
+                  });
+    addGoal(sub);
 
     sub = command(app, "recalibrate", "work a stored sample out again", [this] {
         return daemon::recalibrate(common, recalibrate);

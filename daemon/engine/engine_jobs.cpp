@@ -4,6 +4,7 @@
 
 #include "daemon/alongside.h"
 #include "daemon/engine/engine.h"
+#include "daemon/engine/plan_document.h"
 #include "daemon/guarded.h"
 #include "proc/core/log.h"
 #include "proc/core/number_text.h"
@@ -34,6 +35,8 @@ public:
     void begin(int steps) override {
         engine_.publish([&](EngineStatus& status) { status.job->steps = steps; });
     }
+    void planned(const proc::Plan& plan) override;
+    void outlook(const proc::Progress& progress) override { outlook_ = progress; }
     Result<void> step(const std::string& what) override {
         engine_.world_.alive();
         tell(what);
@@ -70,6 +73,7 @@ private:
     std::string job_;
     Stopwatch watch_;
     bool ended_ = false;
+    std::optional<proc::Progress> outlook_;
 };
 
 void Engine::Monitor::tell(const std::string& what) {
@@ -79,17 +83,24 @@ void Engine::Monitor::tell(const std::string& what) {
         job.step = std::min(job.step + 1, job.steps);
         job.what = what;
         job.elapsed = watch_.elapsed();
-        job.left = job.elapsed * (job.steps - job.step) / std::max(1, job.step);
+        job.left = outlook_ ? outlook_->remaining
+                            : job.elapsed * (job.steps - job.step) / std::max(1, job.step);
         now = job;
     });
-    engine_.tell("progress",
-                 dump({{"job", now.record.id},
-                       {"step", now.step},
-                       {"steps", now.steps},
-                       {"what", what},
-                       {"elapsed_s", now.elapsed.count()},
-                       {"left_s", now.left->count()}}),
-                 false);
+    Json progress{{"job", now.record.id},
+                  {"step", now.step},
+                  {"steps", now.steps},
+                  {"what", what},
+                  {"elapsed_s", now.elapsed.count()},
+                  {"left_s", now.left->count()}};
+    if (outlook_) progress["achieved"] = toJson(outlook_->achieved);
+    engine_.tell("progress", dump(progress), false);
+}
+
+void Engine::Monitor::planned(const proc::Plan& plan) {
+    Json event{{"job", engine_.status().job->record.id}};
+    event.update(promiseOf(plan));
+    engine_.tell("plan", dump(event), false);
 }
 
 Result<void> Engine::Monitor::ask(const std::string& what) {

@@ -6,11 +6,12 @@
 namespace gonio::daemon {
 namespace {
 
-constexpr std::array<std::string_view, 6> kKinds{"calibrate-mirror",
+constexpr std::array<std::string_view, 7> kKinds{"calibrate-mirror",
                                                  "calibrate-black",
                                                  "calibrate-white",
                                                  "verify-white",
                                                  "measure",
+                                                 "plan",
                                                  "recalibrate"};
 constexpr std::size_t kLongestNotes = 4096;
 
@@ -38,6 +39,7 @@ Result<void> check(const JobRequest& request) {
     if (request.notes.size() > kLongestNotes) {
         return Error{ErrorKind::Usage, "notes: more than 4096 bytes"};
     }
+    if (Result<void> good = request.goal.check(); !good) return good;
     if (request.kind == JobKind::VerifyWhite && !(request.limit > 0 && request.limit <= 1)) {
         return Error{ErrorKind::Usage, "limit: wanted above 0 and at most 1 (100 %)"};
     }

@@ -6,12 +6,13 @@
 #include <functional>
 #include <string>
 
+#include "daemon/capture_goal.h"
 #include "daemon/engine/rig_port.h"
 #include "daemon/profile.h"
 #include "daemon/store.h"
 #include "driver/rig.h"
-#include "proc/core/effort.h"
 #include "proc/core/stopwatch.h"
+#include "proc/plan/progress.h"
 
 namespace gonio::daemon {
 
@@ -21,6 +22,7 @@ enum class JobKind {
     CalibrateWhite,
     VerifyWhite,
     Measure,
+    Plan,        ///< what measuring would take and achieve: pilots only
     Recalibrate  ///< of a stored sample: needs no rig
 };
 [[nodiscard]] std::string_view name(JobKind kind);
@@ -29,8 +31,8 @@ enum class JobKind {
 
 struct JobRequest {
     JobKind kind = JobKind::Measure;
-    std::string name;  ///< of the sample to measure or recalibrate; empty for the others
-    Effort effort = Effort::Standard;
+    std::string name;         ///< of the sample to measure or recalibrate; empty for the others
+    CaptureGoal goal{};       ///< measure and plan
     std::string notes;        ///< the operator's, kept with the sample
     double limit = 0.01;      ///< verify-white: the largest relative change that passes
     bool force = false;       ///< measure: with calibrations that are no longer good, too
@@ -43,7 +45,12 @@ struct JobRequest {
 class JobMonitor {
 public:
     virtual ~JobMonitor() = default;
+    /// So many in all, those that are done among them.
     virtual void begin(int steps) = 0;
+    /// What a measurement will take and achieve.
+    virtual void planned(const proc::Plan& plan) = 0;
+    /// How it stands against its plan, from the next step on.
+    virtual void outlook(const proc::Progress& progress) = 0;
     /// One step is done. An error that it returns ends the job.
     virtual Result<void> step(const std::string& what) = 0;
     /// A person has to do something; returns once it is done. An error ends the job.

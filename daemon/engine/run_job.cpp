@@ -7,7 +7,9 @@
 #include "daemon/alongside.h"
 #include "daemon/calibrations.h"
 #include "daemon/engine/job.h"
+#include "daemon/engine/plan_document.h"
 #include "daemon/measurement.h"
+#include "daemon/planned_run.h"
 #include "proc/core/log.h"
 #include "proc/core/median.h"
 #include "proc/core/number_text.h"
@@ -44,6 +46,7 @@ public:
     Result<Json> calibrateTile(bool white);
     Result<Json> verifyWhite();
     Result<Json> measure();
+    Result<Json> plan();
 
 private:
     [[nodiscard]] Bench measuring() const {
@@ -52,7 +55,8 @@ private:
                 .nextPlanStep = bench_.nextPlanStep,
                 .clock = bench_.computer,
                 .step = [this](const std::string& what) { return bench_.monitor.step(what); },
-                .alive = [this] { bench_.monitor.alive(); }};
+                .alive = [this] { bench_.monitor.alive(); },
+                .outlook = [this](const proc::Progress& now) { bench_.monitor.outlook(now); }};
     }
     /// What `work` answers, which takes long; rig and watchdog are fed meanwhile.
     template <class Work>
@@ -64,6 +68,23 @@ private:
     [[nodiscard]] proc::SampleInfo info(const std::string& name) const;
     /// Takes all states of what lies under the rig, which is dark afterwards.
     Result<Captured> capture(const BracketPlan& plan, int darkFrames);
+    /// What a sample is held against, good for this rig.
+    struct Loaded {
+        CalibrationSet set;
+        LoadedSet records;
+        References certified;
+        [[nodiscard]] RigReferences references(const RigProfile& profile) const {
+            return {records.lens, records.white, records.black, certified, profile};
+        }
+    };
+    [[nodiscard]] Result<Loaded> load() const;
+    /// What was planned for the sample, was captured of it, and is achieved by that.
+    struct Taken {
+        Captured captured;
+        Json planned, achieved;
+        double wanted = 0;
+    };
+    [[nodiscard]] Result<Taken> take(const RigReferences& references);
     [[nodiscard]] Result<void> expectPlaced(const std::string& reference) const;
     Result<void> placeMirror(const proc::Wedge& wedge);
     [[nodiscard]] std::optional<double> celsius() const;
@@ -204,12 +225,13 @@ Result<Json> JobRun::calibrateMirror() {
     if (Result<void> dark = bench_.rig.darken(); !dark) return dark.error();
     bench_.monitor.captured();
     lens->dateUtc = bench_.utcNow();
+    const std::optional<double> warmth = celsius();  // of a link that only this thread reads
     const auto kept = whileAlive([&] {
         return bench_.store.addCalibration({.rig = serial_,
                                             .kind = "mirror",
                                             .dateUtc = lens->dateUtc,
                                             .profileHash = bench_.profile.hash,
-                                            .celsius = celsius()},
+                                            .celsius = warmth},
                                            {.file = encodeLens(*lens)});
     });
     if (!kept) return kept.error();
@@ -244,6 +266,7 @@ Result<Json> JobRun::calibrateTile(bool white) {
     finish(about, *captured);
     const std::size_t states = captured->raw.states.size();
     const std::vector<Radians> angles = bench_.rig.identify().ledAngles;
+    const std::optional<double> warmth = celsius();
     const auto kept = whileAlive([&]() -> Result<CalibrationRecord> {
         const Result<std::string> raw = rawBytes(about, std::move(captured->raw.states));
         if (!raw) return raw.error();
@@ -253,7 +276,7 @@ Result<Json> JobRun::calibrateTile(bool white) {
                                             .kind = kind,
                                             .dateUtc = about.dateUtc,
                                             .profileHash = bench_.profile.hash,
-                                            .celsius = celsius()},
+                                            .celsius = warmth},
                                            {.file = *bytes, .raw = *raw});
     });
     if (!kept) return kept.error();
@@ -345,24 +368,69 @@ Result<SampleRecord> JobRun::keep(const std::string& name,
     return std::move(kept->sample);
 }
 
-Result<Json> JobRun::measure() {
-    const Result<CalibrationSet> set = newestSet(bench_.store, serial_);
+Result<JobRun::Loaded> JobRun::load() const {
+    Result<CalibrationSet> set = newestSet(bench_.store, serial_);
     if (!set) return set.error();
     if (Result<void> good = checkValidity(*set); !good) return good.error();
-    const auto loaded = whileAlive([&] { return loadSet(bench_.store, *set); });
-    if (!loaded) return loaded.error();
-    for (const ReferenceRecord* one : {&loaded->black, &loaded->white}) {
+    auto records = whileAlive([&] { return loadSet(bench_.store, *set); });
+    if (!records) return records.error();
+    for (const ReferenceRecord* one : {&records->black, &records->white}) {
         if (Result<void> fits = fitsThisRig(*one); !fits) return fits.error();
     }
-    const Result<References> certified = loadReferences(bench_.profile);
+    Result<References> certified = loadReferences(bench_.profile);
     if (!certified) return certified.error();
-    Result<Captured> captured = capture(sampleBracket(request_.effort), kDarkFrames);
+    return Loaded{std::move(*set), std::move(*records), std::move(*certified)};
+}
+
+Result<JobRun::Taken> JobRun::take(const RigReferences& references) {
+    const Bench bench = measuring();
+    PlannedRun run(bench, references, request_.goal.plan());
+    bench_.monitor.begin(run.steps());
+    const Result<const proc::Plan*> plan = run.plan();
+    if (!plan) return plan.error();
+    bench_.monitor.begin(run.steps());
+    Taken taken{
+        .captured = {}, .planned = promiseOf(**plan), .achieved = {}, .wanted = (*plan)->wanted};
+    bench_.monitor.planned(**plan);
+    Result<Captured> captured = run.capture();
     if (!captured) return captured.error();
+    bench_.monitor.captured();
+    taken.captured = std::move(*captured);
+    taken.achieved = {{"seconds", onRig_.elapsed().count()}};
+    taken.achieved.update(toJson(run.achieved(taken.captured)));
+    return taken;
+}
+
+Result<Json> JobRun::plan() {
+    const Result<Loaded> loaded = load();
+    if (!loaded) return loaded.error();
+    const Bench bench = measuring();
+    const RigReferences references = loaded->references(bench_.profile);
+    PlannedRun run(bench, references, request_.goal.plan());
+    bench_.monitor.begin(run.steps());
+    const Result<const proc::Plan*> plan = run.plan();
+    if (!plan) return plan.error();
+    if (Result<void> dark = bench_.rig.darken(); !dark) return dark.error();
+    bench_.monitor.captured();
+    Json document{{"schema", "gonio/plan/1"}, {"rig", serial_}, {"goal", request_.goal.name()}};
+    document.update(toJson(**plan));
+    document["rig_seconds"] = onRig_.elapsed().count();
+    return document;
+}
+
+Result<Json> JobRun::measure() {
+    const Result<Loaded> loaded = load();
+    if (!loaded) return loaded.error();
+    const RigReferences references = loaded->references(bench_.profile);
+    Result<Taken> taken = take(references);
+    if (!taken) return taken.error();
+    Captured* const captured = &taken->captured;
 
     proc::SampleInfo about = info(request_.name);
-    about.effort = gonio::name(request_.effort);
-    about.referenceCertificate = certified->white->certificate().citation;
-    about.calibrationId = set->id();
+    about.effort = request_.goal.name();
+    about.requestedUncertainty = taken->wanted;
+    about.referenceCertificate = loaded->certified.white->certificate().citation;
+    about.calibrationId = loaded->set.id();
     finish(about, *captured);
     proc::SampleSet sample;
     const std::vector<Radians> angles = bench_.rig.identify().ledAngles;
@@ -371,12 +439,7 @@ Result<Json> JobRun::measure() {
             checkSteady(*captured, "measure again, or measure with --force");
         if (!steady && !force) return steady.error();
         const Stopwatch calibrating(bench_.computer);
-        auto calibrated = calibrateSample(
-            captured->signals,
-            angles,
-            {loaded->lens, loaded->white, loaded->black, *certified, bench_.profile},
-            about,
-            force);
+        auto calibrated = calibrateSample(captured->signals, angles, references, about, force);
         if (calibrated) calibrated->info.computeSeconds += calibrating.elapsed().count();
         return calibrated;
     };
@@ -404,10 +467,12 @@ Result<Json> JobRun::measure() {
                 {"file", kept->file.string()},
                 {"raw", kept->raw.string()},
                 {"effort", sample.info.effort},
-                {"calibration", set->id()},
+                {"calibration", loaded->set.id()},
                 {"measured_cells", measuredCells(sample)},
                 {"median_relative_uncertainty", sample.info.achievedUncertainty.value_or(0)},
                 {"chi_square_per_freedom", captured->chiSquarePerFreedom},
+                {"planned", taken->planned},
+                {"achieved", taken->achieved},
                 {"rig_seconds", sample.info.rigSeconds},
                 {"compute_seconds", sample.info.computeSeconds}};
 }
@@ -419,6 +484,7 @@ Result<Json> run(JobRun& job, JobKind kind) {
         case JobKind::CalibrateWhite: return job.calibrateTile(true);
         case JobKind::VerifyWhite: return job.verifyWhite();
         case JobKind::Measure: return job.measure();
+        case JobKind::Plan: return job.plan();
         case JobKind::Recalibrate: break;  // needs no rig
     }
     return Error{ErrorKind::Internal, "no such job"};

@@ -31,7 +31,7 @@ struct TimeParts {
     Seconds readout{0};   ///< waiting for the frame period, and the last transfer
     Seconds settle{0};    ///< of LEDs, where no frame period hides it
     Seconds dark{0};      ///< dark frames
-    Seconds pilot{0};     ///< pilot frames, all told
+    Seconds pilot{0};     ///< pilot frames, and those that are repeated at the end
     Seconds latency{0};   ///< hand-overs that nothing hides, and waiting for the plan
 
     [[nodiscard]] Seconds total() const {

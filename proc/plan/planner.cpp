@@ -151,7 +151,8 @@ private:
         parts.readout = timing.transfer;  // of the last picture
         for (const ShotKind& shot : plan.pilots)
             parts.pilot +=
-                seconds(cost_.lastFrame(shot.exposure)) * static_cast<double>(plan.states.size());
+                seconds(cost_.lastFrame(shot.exposure)) *
+                static_cast<double>(plan.states.size() + 1);  // those of the first state twice
         for (const DarkCapture& dark : plan.darks)
             parts.dark += seconds(cost_.darkCapture(dark.exposure, dark.frames));
         for (const StatePlan& state : plan.states) {

@@ -2,9 +2,10 @@
 // From the pilots of all states to the captures of the whole run.
 //
 // The run: the pilot shots of every state, one frame each; dark frames; the captures of each state,
-// from the highest reach down; the last picture's transfer. While the host plans, the rig takes the
-// dark frames of the pilots' exposures, which are needed in any case: only what they do not cover
-// is waited for. Pilot frames are data, and their information is counted.
+// from the highest reach down; the pilots of the first state again, which show what has changed
+// meanwhile (no data of the sample); the last picture's transfer. While the host plans, the rig
+// takes the dark frames of the pilots' exposures, which are needed in any case: only what they do
+// not cover is waited for. Pilot frames are data, and their information is counted.
 //
 // What is chosen: for every state how many frames of which shot (cover.h), and for all states
 // together which exposures are used and of how many dark frames each mean dark frame is made, as

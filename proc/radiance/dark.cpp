@@ -19,60 +19,19 @@ Error refused(const std::string& what) {
     return {.kind = ErrorKind::Quality, .message = "dark: " + what};
 }
 
-/// Empty message: the frame belongs with the first.
-std::string misfit(const Frame& frame, const Frame& first) {
-    if (frame.led && !frame.levels.dark())
-        return "a frame was taken with LED " + std::to_string(*frame.led) + " lit";
-    if (frame.exposure.granted != first.exposure.granted) {
-        return "exposures differ: " + microseconds(first.exposure) + " and " +
+/// Empty message: the frame belongs with those before.
+std::string misfit(const Frame& frame, const DarkFrame& before, Size size) {
+    if (frame.exposure.granted != before.exposure.granted) {
+        return "exposures differ: " + microseconds(before.exposure) + " and " +
                microseconds(frame.exposure);
     }
-    if (frame.window != first.window || frame.pixels.size() != first.pixels.size())
+    if (frame.window != before.window || frame.pixels.size() != size)
         return "frames have different windows";
-    if (frame.gainDb != first.gainDb) return "frames have different gains";
+    if (frame.gainDb != before.gainDb) return "frames have different gains";
     return {};
 }
 
 constexpr double kHotSigmas = 5;
-
-Image<float> meanOf(std::span<const Frame> frames) {
-    Image<float> mean(frames.front().pixels.size());
-    std::vector<double> sum(mean.pixels().size(), 0.0);
-    for (const Frame& frame : frames) {
-        const auto pixels = frame.pixels.pixels();
-        for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += pixels[i];
-    }
-    const double count = static_cast<double>(frames.size());
-    for (std::size_t i = 0; i < sum.size(); ++i) {
-        mean.pixels()[i] = static_cast<float>(sum[i] / count);
-    }
-    return mean;
-}
-
-/// Sum of the squared differences between the frames and their mean at one pixel.
-double squaresAt(std::span<const Frame> frames, const Image<float>& mean, std::size_t pixel) {
-    double sum = 0;
-    for (const Frame& frame : frames) {
-        const double d = static_cast<double>(frame.pixels.pixels()[pixel]) -
-                         static_cast<double>(mean.pixels()[pixel]);
-        sum += d * d;
-    }
-    return sum;
-}
-
-/// The same, over all pixels.
-double squares(std::span<const Frame> frames, const Image<float>& mean) {
-    double sum = 0;
-    const auto means = mean.pixels();
-    for (const Frame& frame : frames) {
-        const auto pixels = frame.pixels.pixels();
-        for (std::size_t i = 0; i < pixels.size(); ++i) {
-            const double d = static_cast<double>(pixels[i]) - static_cast<double>(means[i]);
-            sum += d * d;
-        }
-    }
-    return sum;
-}
 
 std::vector<HotPixel> hotPixels(const Image<float>& mean, double varianceOfMean) {
     double average = 0;
@@ -94,45 +53,77 @@ std::vector<HotPixel> hotPixels(const Image<float>& mean, double varianceOfMean)
 struct Pool {
     double squares = 0;
     std::size_t pixels = 0;
-    [[nodiscard]] double variance(std::size_t frames) const {
-        return squares / (static_cast<double>(frames - 1) * static_cast<double>(pixels));
+    [[nodiscard]] double variance(int frames) const {
+        return squares / ((frames - 1.0) * static_cast<double>(pixels));
     }
 };
 
 }  // namespace
 
-Result<DarkFrame> averageDark(std::span<const Frame> frames, const SensorNoise& noise) {
-    if (frames.empty() || frames.front().pixels.empty()) return refused("no frames to average");
-    const Frame& first = frames.front();
-    for (const Frame& frame : frames) {
-        if (std::string why = misfit(frame, first); !why.empty()) return refused(why);
+Result<void> DarkAverage::add(const Frame& frame) {
+    if (frame.pixels.empty()) return refused("a frame has no pixels");
+    if (frame.led && !frame.levels.dark())
+        return refused("a frame was taken with LED " + std::to_string(*frame.led) + " lit");
+    if (about_.frames == 0) {
+        about_.exposure = frame.exposure;
+        about_.window = frame.window;
+        about_.gainDb = frame.gainDb;
+        sums_ = Image<std::uint32_t>(frame.pixels.size());
+        squares_.assign(frame.pixels.pixels().size(), 0);
+    } else if (std::string why = misfit(frame, about_, sums_.size()); !why.empty()) {
+        return refused(why);
     }
-    DarkFrame dark{.mean = meanOf(frames),
-                   .hot = {},
-                   .exposure = first.exposure,
-                   .window = first.window,
-                   .gainDb = first.gainDb,
-                   .frames = static_cast<int>(frames.size())};
-    const double count = static_cast<double>(frames.size());
-    if (frames.size() == 1) {
-        const double k = noise.electronsPerDn;
-        dark.varianceOfMean = noise.darkVariance(dark.exposure.seconds()) / (k * k);
+    ++about_.frames;
+    const auto pixels = frame.pixels.pixels();
+    const auto sums = sums_.pixels();
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+        const std::uint32_t dn = pixels[i];
+        sums[i] += dn;
+        squares_[i] += std::uint64_t{dn} * dn;
+    }
+    return {};
+}
+
+/// Sum of the squared differences between the frames and their mean at one pixel.
+double DarkAverage::squares(std::size_t pixel) const {
+    const double sum = sums_.pixels()[pixel];
+    return static_cast<double>(squares_[pixel]) - sum * sum / about_.frames;
+}
+
+Result<DarkFrame> DarkAverage::mean() const {
+    if (about_.frames == 0) return refused("no frames to average");
+    DarkFrame dark = about_;
+    const double count = dark.frames;
+    dark.mean = Image<float>(sums_.size());
+    const auto means = dark.mean.pixels();
+    for (std::size_t i = 0; i < means.size(); ++i)
+        means[i] = static_cast<float>(sums_.pixels()[i] / count);
+    if (dark.frames == 1) {
+        const double k = noise_.electronsPerDn;
+        dark.varianceOfMean = noise_.darkVariance(dark.exposure.seconds()) / (k * k);
         dark.hot = hotPixels(dark.mean, dark.varianceOfMean);
         return dark;
     }
-    Pool pool{.squares = squares(frames, dark.mean), .pixels = dark.mean.pixels().size()};
+    Pool pool{.squares = 0, .pixels = means.size()};
+    for (std::size_t i = 0; i < means.size(); ++i) pool.squares += squares(i);
     // Frames without any noise still have that of rounding.
-    const double single = std::max(pool.variance(frames.size()), 1.0 / 12);
+    const double single = std::max(pool.variance(dark.frames), 1.0 / 12);
     dark.hot = hotPixels(dark.mean, single / count);
     const auto width = static_cast<std::size_t>(dark.mean.width());
     for (const HotPixel& hot : dark.hot) {
-        const auto pixel =
-            static_cast<std::size_t>(hot.y) * width + static_cast<std::size_t>(hot.x);
-        pool.squares -= squaresAt(frames, dark.mean, pixel);
+        pool.squares -=
+            squares(static_cast<std::size_t>(hot.y) * width + static_cast<std::size_t>(hot.x));
         --pool.pixels;
     }
-    dark.varianceOfMean = pool.variance(frames.size()) / count;
+    dark.varianceOfMean = pool.variance(dark.frames) / count;
     return dark;
+}
+
+Result<DarkFrame> averageDark(std::span<const Frame> frames, const SensorNoise& noise) {
+    DarkAverage average(noise);
+    for (const Frame& frame : frames)
+        if (Result<void> added = average.add(frame); !added) return added.error();
+    return average.mean();
 }
 
 std::span<const HotPixel> DarkFrame::hotInRow(int y) const {

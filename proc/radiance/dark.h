@@ -11,6 +11,7 @@
 // A DarkLibrary holds one per granted exposure. Its match is exact: a dark frame of another
 // exposure holds another amount of dark current, and is refused by name rather than scaled.
 
+#include <cstdint>
 #include <map>
 #include <span>
 #include <vector>
@@ -38,7 +39,29 @@ struct DarkFrame {
     [[nodiscard]] std::span<const HotPixel> hotInRow(int y) const;
 };
 
-/// Quality error when there is none, when one is lit, or when they differ in exposure or window.
+/// Dark frames of one exposure, added up as they come: a frame can be let go of once it was added.
+/// Whole numbers, so that the sums are exact. 12 bytes a pixel.
+class DarkAverage {
+public:
+    explicit DarkAverage(const SensorNoise& noise) : noise_(noise) {}
+
+    /// Quality error, and nothing added, when it is lit, has no pixels, or differs from the first
+    /// in exposure, window or gain.
+    [[nodiscard]] Result<void> add(const Frame& frame);
+    /// Of all that were added; Quality error when that is none.
+    [[nodiscard]] Result<DarkFrame> mean() const;
+
+private:
+    [[nodiscard]] double squares(std::size_t pixel) const;
+
+    SensorNoise noise_;
+    DarkFrame about_;  // of the first, without its pixels
+    Image<std::uint32_t> sums_;
+    std::vector<std::uint64_t> squares_;
+};
+
+/// Quality error when there is none, when one is lit, or when they differ in exposure, window
+/// or gain.
 [[nodiscard]] Result<DarkFrame> averageDark(std::span<const Frame> frames,
                                             const SensorNoise& noise);
 

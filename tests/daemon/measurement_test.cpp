@@ -14,6 +14,7 @@
 #include "sim/in_process.h"
 #include "sim/optics.h"
 #include "sim/rig_errors.h"
+#include "tests/daemon/bracket_of.h"
 #include "tests/optics/lenses.h"
 
 namespace gonio::daemon {
@@ -41,7 +42,7 @@ protected:
                                  .nextPlanStep = nextPlanStep,
                                  .clock = computer,
                                  .step = std::move(step)},
-                                test::crookedLens(),
+                                gonio::test::crookedLens(),
                                 kPlan,
                                 kDarkFrames);
     }
@@ -88,16 +89,14 @@ TEST_F(MeasurementOnSim, MergingBesideTheCapturesChangesNoBit) {
     ASSERT_TRUE(window);
     std::uint64_t step = 1;
     Sequencer sequencer(*twin, profile, step);
-    auto dark = sequencer.darks(kDarkFrames, [] { return Result<void>(); });
-    ASSERT_TRUE(dark);
-    proc::DarkLibrary darks;
-    for (proc::DarkFrame& frame : *dark) darks.add(std::move(frame));
-    const proc::Binning binning(test::crookedLens(), *window, kField);
+    const auto darks = sequencer.darks(kDarkFrames, [] { return Result<void>(); });
+    ASSERT_TRUE(darks);
+    const proc::Binning binning(gonio::test::crookedLens(), *window, kField);
     std::size_t at = 0;
     for (const State state : sequencer.states()) {
-        const auto frames = sequencer.bracket(state, kPlan);
+        const auto frames = test::bracketOf(sequencer, state, kPlan);
         ASSERT_TRUE(frames);
-        const auto merged = proc::merge(*frames, state.band, darks, profile.noise);
+        const auto merged = proc::merge(*frames, state.band, *darks, profile.noise);
         ASSERT_TRUE(merged);
         const proc::CellSignal wanted = binning.bin(*merged);
         const proc::CellSignal& signal =
@@ -150,8 +149,8 @@ Result<Captured> capturedWith(const std::string& rigErrors) {
                              .nextPlanStep = nextPlanStep,
                              .clock = computer,
                              .step = [](const std::string&) { return Result<void>(); }},
-                            test::crookedLens(),
-                            sampleBracket(Effort::Draft),
+                            gonio::test::crookedLens(),
+                            {.longest = 4},
                             kDarkFrames);
 }
 

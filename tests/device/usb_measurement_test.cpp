@@ -7,6 +7,7 @@
 
 #include "daemon/measurement.h"
 #include "daemon/sequencer.h"
+#include "tests/daemon/bracket_of.h"
 #include "tests/device/usb_rig_fixture.h"
 #include "tests/support/wait_until.h"
 
@@ -56,7 +57,7 @@ TEST_F(UsbRigTest, AMeasurementOfTwelveStatesIsThatOfTheInProcessDoor) {
     Measuring twin(std::move(*twinRig), *profile);
     const auto window = daemon::configureWindow(twin.rig);
     ASSERT_TRUE(window) << window.error().message;
-    const daemon::BracketPlan plan = daemon::sampleBracket(Effort::Draft);
+    const daemon::BracketPlan plan = {.longest = 4};
     const auto states = twin.sequencer.states();
     ASSERT_EQ(states.size(), 12U);
     const auto next = [&](std::size_t state) {
@@ -65,7 +66,7 @@ TEST_F(UsbRigTest, AMeasurementOfTwelveStatesIsThatOfTheInProcessDoor) {
     // All of the twin's first: the real rig would wait for it without a heartbeat.
     std::vector<std::vector<Frame>> wanted;
     for (std::size_t state = 0; state < states.size(); ++state) {
-        auto frames = twin.sequencer.bracket(states[state], plan, next(state));
+        auto frames = daemon::test::bracketOf(twin.sequencer, states[state], plan, next(state));
         ASSERT_TRUE(frames) << frames.error().message;
         wanted.push_back(std::move(*frames));
     }
@@ -81,8 +82,9 @@ TEST_F(UsbRigTest, AMeasurementOfTwelveStatesIsThatOfTheInProcessDoor) {
     Cost cost;
     std::size_t frames = 0;
     for (std::size_t state = 0; state < states.size(); ++state) {
-        const auto seen =
-            cost.of([&] { return real.sequencer.bracket(states[state], plan, next(state)); });
+        const auto seen = cost.of([&] {
+            return daemon::test::bracketOf(real.sequencer, states[state], plan, next(state));
+        });
         ASSERT_TRUE(seen) << seen.error().message;
         ASSERT_TRUE(real.rig.keepAlive());
         ASSERT_EQ(seen->size(), wanted[state].size());

@@ -206,7 +206,7 @@ TEST(Planner, PartsOfTheTimeAddUpToItsCaptures) {
     ASSERT_TRUE(plan);
     const ShotCost cost(scene.rig.timing);
     Nanoseconds sum{0};
-    for (const ShotKind& shot : plan->pilots) sum += cost.lastFrame(shot.exposure);
+    for (const ShotKind& shot : plan->pilots) sum += 2 * cost.lastFrame(shot.exposure);
     for (const DarkCapture& dark : plan->darks) sum += cost.darkCapture(dark.exposure, dark.frames);
     for (const PlannedCapture& c : plan->states[0].captures)
         sum += cost.capture(c.shot.exposure, c.frames);

@@ -66,8 +66,18 @@ std::string mutated(std::string text, Random& random) {
 
 /// Members that are asked for, of any type, and others.
 Json randomBody(Random& random) {
-    constexpr std::string_view kNames[] = {
-        "kind", "name", "effort", "notes", "limit", "operator", "what", "tilt_x_deg", "seed", "x"};
+    constexpr std::string_view kNames[] = {"kind",
+                                           "name",
+                                           "effort",
+                                           "notes",
+                                           "limit",
+                                           "time_budget_s",
+                                           "target_uncertainty",
+                                           "operator",
+                                           "what",
+                                           "tilt_x_deg",
+                                           "seed",
+                                           "x"};
     Json body = Json::object();
     for (std::uint64_t k = random() % 4; k > 0; --k) {
         const Json values[] = {nullptr,

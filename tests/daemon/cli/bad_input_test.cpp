@@ -122,6 +122,13 @@ TEST_F(BadInput, WrongCommandLinesAreUsageErrors) {
     expectRefused(gonio({"info"}), kUsage, {"file"});
     expectRefused(gonio({"info", kRealFile, "--colour"}), kUsage, {"--colour"});
     expectRefused(gonio({"measure", "x", "--effort", "heroic"}), kUsage, {"heroic", "draft"});
+    expectRefused(gonio({"plan", "--target-uncertainty", "1"}), kUsage, {"--target-uncert", "1%"});
+    expectRefused(gonio({"plan", "--target-uncertainty", "0%"}), kUsage, {"0%"});
+    expectRefused(gonio({"plan", "--time-budget", "soon"}), kUsage, {"--time-budget", "5s"});
+    expectRefused(gonio({"plan", "--time-budget", "-1s"}), kUsage, {"-1 s", "above 0"});
+    expectRefused(gonio({"plan", "--time-budget", "2s", "--effort", "draft"}),
+                  kUsage,
+                  {"exclude each other"});
     expectRefused(gonio({"measure", "../x"}), kUsage, {"../x"});
     expectRefused(gonio({"info", "sample:../../etc/passwd"}), kFile, {"there is none"});
     expectRefused(gonio({"verify-white", "--limit", "0.5"}), kUsage, {"--limit", "1%"});

@@ -20,6 +20,21 @@ const std::vector<std::string> kSamples{
     "model:ggx,alpha=0.05,f0=0.9/0.7/0.4",
 };
 
+/// What was planned from the pilots came true: within a tenth of the random uncertainty and of the
+/// time.
+void expectAsPlanned(const Json& measured) {
+    const Json& planned = measured["planned"];
+    const Json& achieved = measured["achieved"];
+    for (const char* share : {"median", "p95"}) {
+        const double wanted = planned["random"][share];
+        EXPECT_NEAR(achieved["random"][share], wanted, 0.1 * wanted) << measured;
+    }
+    const double seconds = planned["seconds"];
+    EXPECT_NEAR(achieved["seconds"], seconds, 0.1 * seconds) << measured;
+    EXPECT_LE(planned["random"]["worst"].get<double>(), planned["wanted"].get<double>());
+    EXPECT_NEAR(achieved["cells"], planned["cells"], 0.02 * planned["cells"].get<double>());
+}
+
 /// A lab: a daemon on the simulated rig, and its store.
 class Bench {
 public:
@@ -61,6 +76,7 @@ public:
             const Json measured = (*this)({"measure", name});
             EXPECT_EQ(measured["schema"], "gonio/measure/1");
             EXPECT_NEAR(measured["chi_square_per_freedom"], 1, 0.01);
+            expectAsPlanned(measured);
             score.push_back(measured["file"]);
             all.runs.push_back(measured);
         }
@@ -167,7 +183,29 @@ TEST(MeasureRun, WithoutSystematicErrorsNoiseExplainsTheRest) {
     EXPECT_GE(inside / cells, 0.94);
     EXPECT_LE(inside / cells, 0.97);
     expectUsable(gonio, all.runs[1]);
+    expectPlansHold(gonio);
     expectRecalibrates(gonio, all.runs[1]);
+}
+
+/// Measuring costs and achieves what `plan` says beforehand; a budget is kept, a target met.
+void expectPlansHold(const Bench& gonio) {
+    gonio({"sim", "place", kSamples[3]});
+    const Json plan = gonio({"plan", "--target-uncertainty", "3%"});
+    EXPECT_EQ(plan["schema"], "gonio/plan/1");
+    EXPECT_EQ(plan["goal"], "target 3 %");
+    const Json target = gonio({"measure", "target", "--target-uncertainty", "3%"});
+    EXPECT_EQ(target["effort"], "target 3 %");
+    const double seconds = plan["seconds"]["total"], median = plan["predicted"]["random"]["median"];
+    EXPECT_NEAR(target["planned"]["seconds"], seconds, 0.05 * seconds);
+    EXPECT_NEAR(target["planned"]["random"]["median"], median, 0.1 * median);
+    const Json budget = gonio({"measure", "budget", "--time-budget", "3s"});
+    EXPECT_LE(budget["planned"]["seconds"], 3);
+    EXPECT_LE(budget["rig_seconds"], 3.2);
+    EXPECT_LT(budget["planned"]["random"]["worst"], target["planned"]["random"]["worst"]);
+    for (const Json& measured : {target, budget}) expectAsPlanned(measured);
+    const Ran tooShort = gonio.program({"plan", "--time-budget", "1s"});
+    EXPECT_EQ(tooShort.exitCode, 2) << tooShort.err;
+    EXPECT_NE(tooShort.err.find("at least"), std::string::npos) << tooShort.err;
 }
 
 TEST(MeasureRun, SameSeedGivesTheSameBytes) {

@@ -13,6 +13,7 @@ constexpr JobKind kKinds[] = {JobKind::CalibrateMirror,
                               JobKind::CalibrateWhite,
                               JobKind::VerifyWhite,
                               JobKind::Measure,
+                              JobKind::Plan,
                               JobKind::Recalibrate};
 
 TEST(JobKind, ComesBackFromItsName) {

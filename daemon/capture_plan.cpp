@@ -1,0 +1,123 @@
+#include "daemon/capture_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "proc/plan/prediction.h"
+
+namespace gonio::daemon {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr int kMostFrames = 256;  // of one capture
+
+proc::RigTiming timingOf(const driver::RigInfo& rig, const RigProfile& profile) {
+    proc::RigTiming timing =
+        profile.cameraUsb == 3 ? proc::RigTiming::usb3() : proc::RigTiming::usb2();
+    timing.framePeriod = Seconds(rig.framePeriod);
+    timing.transfer = std::min(timing.transfer, timing.framePeriod);
+    timing.ledSettle = std::chrono::milliseconds(rig.ident.ledSettleMs);
+    return timing;
+}
+
+}  // namespace
+
+proc::RigModel rigModel(const driver::RigInfo& rig,
+                        const RigProfile& profile,
+                        double sensorCelsius) {
+    const proc::SensorNoise& noise = profile.noise;
+    proc::RigModel model{.sensor = {.noise = noise,
+                                    .blackDn = static_cast<double>(rig.blackLevel),
+                                    .fullWellElectrons = noise.fullScaleDn * noise.electronsPerDn,
+                                    .celsius = sensorCelsius},
+                         .timing = timingOf(rig, profile),
+                         .levels = {1},
+                         .exposures = {},
+                         .maxFrames = std::min(rig.maxFrames, kMostFrames)};
+    model.levels.insert(model.levels.end(), profile.dimLevels.begin(), profile.dimLevels.end());
+    for (const Microseconds exposure : profile.exposures) model.exposures.emplace_back(exposure);
+    return model;
+}
+
+proc::SystematicFloor floorOf(const RigReferences& references) {
+    const proc::Certificate& white = references.certified.white->certificate();
+    const RigProfile& profile = references.profile;
+    return proc::SystematicFloor({
+        {"white reference, common", proc::Correlation::Common, white.uCommon, 0},
+        {"white reference, per direction", proc::Correlation::PerCell, white.uPerDirection, 0},
+        {"LED drift", proc::Correlation::PerState, std::sqrt(2.0) * profile.ledDrift, 0},
+        {"black reference",
+         proc::Correlation::Common,
+         0,
+         profile.blackReflectance / kPi * profile.blackRelativeUncertainty},
+    });
+}
+
+Responsivities::Responsivities(const RigReferences& references,
+                               const std::vector<Radians>& ledAngles)
+    : leds_(ledAngles.size()) {
+    const std::size_t cells = proc::CellGrid::count();
+    for (std::size_t led = 0; led < leds_.size(); ++led) {
+        const Direction wi = Direction::fromSpherical(ledAngles[led], Radians(0));
+        for (Cells& band : leds_[led]) {
+            band.signalPerF.assign(cells, kNaN);
+            band.dark.assign(cells, kNaN);
+        }
+        for (std::size_t cell = 0; cell < cells; ++cell) {
+            const LightView pair{.in = wi, .out = proc::CellGrid::centre(cell)};
+            const Answer white = references.certified.white->answer(pair);
+            const Answer black = references.certified.black->answer(pair);
+            if (!white.present() || !black.present()) continue;
+            for (const Band band : kBands) {
+                const proc::CellSignal& sw = references.white.signals[led][index(band)];
+                const proc::CellSignal& sb = references.black.signals[led][index(band)];
+                if (!sw.present(cell) || !sb.present(cell)) continue;
+                const double perF =
+                    (sw.signal[cell] - sb.signal[cell]) / (white.f[band] - black.f[band]);
+                if (!(perF > 0)) continue;
+                leds_[led][index(band)].signalPerF[cell] = perF;
+                leds_[led][index(band)].dark[cell] = sb.signal[cell] - black.f[band] * perF;
+            }
+        }
+    }
+}
+
+proc::Responsivity Responsivities::of(State state) const {
+    const Cells& cells = leds_[static_cast<std::size_t>(state.led)][index(state.band)];
+    return {.signalPerF = cells.signalPerF, .dark = cells.dark};
+}
+
+proc::Prediction achieved(const PlacementSignals& signals,
+                          const Responsivities& responsivities,
+                          const proc::SystematicFloor& floor,
+                          double fMin) {
+    std::vector<proc::Counted> random, systematic, total;
+    for (std::size_t led = 0; led < signals.size(); ++led) {
+        for (const Band band : kBands) {
+            const proc::CellSignal& signal = signals[led][index(band)];
+            const proc::Responsivity means =
+                responsivities.of({.led = static_cast<int>(led), .band = band});
+            for (std::size_t cell = 0; cell < signal.size(); ++cell) {
+                if (!signal.present(cell)) continue;
+                const double light = signal.signal[cell] - means.dark[cell];
+                const double f = light / means.signalPerF[cell];
+                if (!(f >= fMin)) continue;
+                const double uRandom = std::sqrt(signal.variance[cell]) / light;
+                const double uSystematic = floor.at(f) / f;
+                random.push_back({uRandom});
+                systematic.push_back({uSystematic});
+                total.push_back({std::hypot(uRandom, uSystematic)});
+            }
+        }
+    }
+    const std::size_t cells = random.size();
+    return {.random = proc::spreadOf(std::move(random)),
+            .systematic = proc::spreadOf(std::move(systematic)),
+            .total = proc::spreadOf(std::move(total)),
+            .cramerRao = {kNaN, kNaN, kNaN},
+            .cells = cells};
+}
+
+}  // namespace gonio::daemon
