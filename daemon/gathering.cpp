@@ -1,9 +1,16 @@
 #include "daemon/gathering.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
+
+#include "proc/radiance/group_scales.h"
 
 namespace gonio::daemon {
 namespace {
+
+// Offsets of effective times: what is corrected, and what is no offset but another picture.
+constexpr double kSmallest = 5e-4, kSigmas = 3, kAbsurd = 0.5;
 
 void describe(const Frame& frame, Band band, std::vector<proc::RawExposure>& bracket) {
     if (bracket.empty() || bracket.back().captureId != frame.captureId) {
@@ -17,15 +24,52 @@ void describe(const Frame& frame, Band band, std::vector<proc::RawExposure>& bra
     ++bracket.back().frames;
 }
 
+/// How well the effective times are known beforehand: the light wanders between captures.
+proc::NominalUncertainty nominalOf(const RigProfile& profile) {
+    proc::NominalUncertainty nominal;
+    nominal.relative = std::max(nominal.relative, profile.ledDrift);
+    return nominal;
+}
+
+/// Something is off by more than noise, and by so much that it matters.
+bool worthCorrecting(const proc::ScaleReport& report) {
+    const auto sane = [](const proc::GroupScale& group) {
+        return std::abs(group.offset.size) < kAbsurd;
+    };
+    const auto off = [](const proc::GroupScale& group) {
+        return std::abs(group.offset.size) > std::max(kSmallest, kSigmas * group.offset.u);
+    };
+    return std::all_of(report.groups.begin(), report.groups.end(), sane) &&
+           std::any_of(report.groups.begin(), report.groups.end(), off);
+}
+
+void describe(const proc::ScaleReport& report, bool corrected, proc::RawExposure& exposure) {
+    for (const proc::GroupScale& group : report.groups) {
+        if (group.granted != exposure.granted || group.level != exposure.level) continue;
+        if (corrected) exposure.scale = 1 + group.offset.size;
+        exposure.uScale = group.offset.u;
+    }
+}
+
 }  // namespace
 
-Result<Processed> Processing::operator()(State state, const proc::BracketSums& sums) const {
+Result<Processed> Processing::operator()(State state,
+                                         proc::MergeAccumulator& sums,
+                                         std::vector<proc::RawExposure> exposures) const {
     const Stopwatch processing(clock);
-    Result<proc::MergedState> merged = proc::mergeSums(sums);
+    Result<proc::MergedState> merged = proc::mergeSums(sums.sums());
     if (!merged) return merged.error();
-    const std::optional<LightStep> step = lightStep(state, sums, *merged);
+    const proc::ScaleReport scales = proc::groupScales(sums.sums(), *merged, nominalOf(profile));
+    const bool correct = worthCorrecting(scales);
+    if (correct) {
+        proc::correctScales(sums, scales);
+        merged = proc::mergeSums(sums.sums());
+        if (!merged) return merged.error();
+    }
+    for (proc::RawExposure& exposure : exposures) describe(scales, correct, exposure);
+    const std::optional<LightStep> step = lightStep(state, sums.sums(), *merged);
     Processed done{.signal = binning.bin(*merged),
-                   .raw = {.merged = std::move(*merged), .bracket = {}},
+                   .raw = {.merged = std::move(*merged), .bracket = std::move(exposures)},
                    .lightStep = step,
                    .compute = {}};
     done.compute = processing.elapsed();
@@ -35,8 +79,8 @@ Result<Processed> Processing::operator()(State state, const proc::BracketSums& s
 Gathering::Gathering(driver::Rig& rig, const Processing& processing)
     : rig_(rig),
       processing_(processing),
-      brackets_{{{{}, {Band::R, processing.darks, processing.noise}, {}},
-                 {{}, {Band::R, processing.darks, processing.noise}, {}}}} {
+      brackets_{{{{}, {Band::R, processing.darks, processing.profile.noise}, {}},
+                 {{}, {Band::R, processing.darks, processing.profile.noise}, {}}}} {
     captured_.signals.resize(rig.identify().ledAngles.size());
 }
 
@@ -59,13 +103,10 @@ Result<void> Gathering::add(const Frame& frame) {
 Result<void> Gathering::end() {
     if (Result<void> last = settle(); !last) return last;
     captured_.compute += std::exchange(adding_, Seconds(0));
-    const Bracket& bracket = atHand();
+    Bracket& bracket = atHand();
     ++states_;
-    running_.emplace([this, &bracket]() -> Result<Processed> {
-        Result<Processed> done = processing_(bracket.state, bracket.sums.sums());
-        if (done) done->raw.bracket = bracket.exposures;
-        return done;
-    });
+    running_.emplace(
+        [this, &bracket] { return processing_(bracket.state, bracket.sums, bracket.exposures); });
     return {};
 }
 

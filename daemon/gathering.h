@@ -28,11 +28,14 @@ struct Processed {
 struct Processing {
     const proc::DarkLibrary& darks;
     const proc::Binning& binning;
-    const proc::SensorNoise& noise;
+    const RigProfile& profile;
     const Clock& clock;
 
-    /// Without what describes the bracket.
-    [[nodiscard]] Result<Processed> operator()(State state, const proc::BracketSums& sums) const;
+    /// Puts the effective times of the bracket right first, as far as its pictures tell that they
+    /// are wrong. `exposures`: the bracket's, whose scales are set.
+    [[nodiscard]] Result<Processed> operator()(State state,
+                                               proc::MergeAccumulator& sums,
+                                               std::vector<proc::RawExposure> exposures) const;
 };
 
 class Gathering {

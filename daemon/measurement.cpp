@@ -103,7 +103,7 @@ Result<Captured> capturePlacement(const Bench& bench,
     const Seconds prepared = preparing.elapsed();
     Gathering gathering(
         bench.rig,
-        {.darks = *darks, .binning = *binning, .noise = bench.profile.noise, .clock = bench.clock});
+        {.darks = *darks, .binning = *binning, .profile = bench.profile, .clock = bench.clock});
     const std::vector<State> states = sequencer.states();
     for (std::size_t i = 0; i < states.size(); ++i) {
         const auto then = i + 1 < states.size() ? std::optional(states[i + 1]) : std::nullopt;

@@ -201,11 +201,9 @@ Result<void> PlannedRun::takeDarks() {
 }
 
 Result<Captured> PlannedRun::takeStates() {
-    Gathering gathering(bench_.rig,
-                        {.darks = darks_,
-                         .binning = *binning_,
-                         .noise = bench_.profile.noise,
-                         .clock = bench_.clock});
+    Gathering gathering(
+        bench_.rig,
+        {.darks = darks_, .binning = *binning_, .profile = bench_.profile, .clock = bench_.clock});
     std::vector<KnownShot> shots;
     std::vector<std::size_t> stateOf;  // of each shot; behind the last: the repeated pilots
     const auto list = [&](std::size_t state, const KnownShot& shot) {

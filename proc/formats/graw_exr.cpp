@@ -32,7 +32,9 @@ json toJson(const RawExposure& e) {
             {"level", e.level},
             {"frames", e.frames},
             {"black_level", e.blackLevel},
-            {"celsius", celsius}};
+            {"celsius", celsius},
+            {"scale", e.scale},
+            {"u_scale", e.uScale}};
 }
 
 /// The library would turn 70000 into the level 4464, and 1e300 into anything.
@@ -53,6 +55,8 @@ RawExposure exposureFrom(const json& j) {
     e.level = integerFrom<std::uint16_t>(j.at("level"));
     e.frames = integerFrom<int>(j.at("frames"));
     e.blackLevel = integerFrom<std::uint16_t>(j.at("black_level"));
+    e.scale = j.value("scale", 1.0);
+    e.uScale = j.value("u_scale", 0.0);
     const json& celsius = j.at("celsius");
     for (std::size_t i = 0; i < e.celsius.size(); ++i) {
         if (!celsius.at(i).is_null()) e.celsius[i] = celsius.at(i).get<double>();

@@ -27,6 +27,9 @@ struct RawExposure {
     int frames = 0;
     std::uint16_t blackLevel = 0;                  ///< DN
     std::array<std::optional<double>, 4> celsius;  ///< LED board, sensor, body, ambient
+    /// Effective time over nominal, as the bracket's own pictures tell it (group_scales.h), and its
+    /// standard uncertainty.
+    double scale = 1, uScale = 0;
 
     bool operator==(const RawExposure&) const = default;
 };
