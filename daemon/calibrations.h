@@ -49,7 +49,8 @@ struct RigNow {
                                  const ValidityLimits& limits);
 
 [[nodiscard]] Result<LensRecord> readLens(const CalibrationRecord& mirror);
-/// Its signals as this lens map bins them. `mirror` and `lens` are one calibration.
+/// Its signals as this lens map bins them, all bands of each of its LEDs. `mirror` and `lens` are
+/// one calibration. File error where a state is missing.
 [[nodiscard]] Result<ReferenceRecord> readReference(Store& store,
                                                     const CalibrationRecord& reference,
                                                     const CalibrationRecord& mirror,
@@ -64,5 +65,9 @@ struct LoadedSet {
 /// All signals of a raw capture as a lens map bins them, by LED; LEDs that it lacks are left out.
 [[nodiscard]] Result<PlacementSignals> binned(const std::filesystem::path& raw,
                                               const LensRecord& lens);
+/// File error unless there are `leds` LEDs, with all of their bands.
+[[nodiscard]] Result<void> checkComplete(const PlacementSignals& signals,
+                                         std::size_t leds,
+                                         const std::string& what);
 
 }  // namespace gonio::daemon

@@ -31,16 +31,19 @@ Result<CalibrationSet> wantedSet(Store& store,
     return parseSet(store, calibration, *own);
 }
 
-/// The signals hold every LED and band that the sample has.
+/// The sample's raw signals and both references hold every LED and band that it has.
 Result<void> checkComplete(const PlacementSignals& signals,
-                           const proc::SampleSet& sample,
-                           const std::string& file) {
-    bool complete = signals.size() == sample.leds.size();
-    for (const auto& led : signals) {
-        for (const proc::CellSignal& band : led) complete = complete && band.size() > 0;
+                           const LoadedSet& references,
+                           const SampleRecord& sample,
+                           std::size_t leds) {
+    const Result<void> own = daemon::checkComplete(signals, leds, sample.raw.string());
+    if (!own) return own;
+    for (const ReferenceRecord* one : {&references.black, &references.white}) {
+        const Result<void> fits =
+            daemon::checkComplete(one->signals, leds, "the " + one->info.name + " reference");
+        if (!fits) return fits;
     }
-    if (complete) return {};
-    return Error{ErrorKind::File, file + ": not all states of the sample are there"};
+    return {};
 }
 
 std::vector<Radians> anglesOf(const proc::SampleSet& sample) {
@@ -73,7 +76,7 @@ Result<std::string> workedOut(const Desk& desk, const Original& before, const Ca
     const Result<PlacementSignals> signals = binned(before.record.raw, loaded->lens);
     if (!signals) return signals.error();
     const Result<void> complete =
-        checkComplete(*signals, before.sample, before.record.raw.string());
+        checkComplete(*signals, *loaded, before.record, before.sample.leds.size());
     if (!complete) return complete.error();
     proc::SampleInfo info = before.sample.info;
     info.calibrationId = set.id();
