@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <functional>
 #include <random>
 
 #include "proc/models/ggx.h"
@@ -275,6 +276,37 @@ TEST(TiltCorrection, UncertaintyOfTheTiltIsTheSlopeOfTheLobe) {
                              shown(*surface, Direction(), {Direction(), wo}) -
                          1;
     EXPECT_NEAR(added / before.f[cell], std::abs(moved), 0.1 * std::abs(moved));
+}
+
+/// What `change` adds to u_systematic of a cell on the flank of a lobe, relative to f.
+template <class Change>
+double addedOnTheFlank(const SampleSet& sample, const Change& change) {
+    const auto cell = *CellGrid::cellAt(Direction::fromSpherical(4.5_deg, 10_deg));
+    const SampleSet after = change(sample);
+    const double before =
+        sample.leds[0].bands[0].uSystematic[cell] / sample.leds[0].bands[0].f[cell];
+    const CellSamples& cells = after.leds[0].bands[0];
+    return std::sqrt(std::pow(cells.uSystematic[cell] / cells.f[cell], 2) - before * before);
+}
+
+TEST(TiltCorrection, WavesAddAsMuchAboutEitherAxisAsAnUncertaintyOfThatSize) {
+    const SampleSet flat = seen(*model("ggx,alpha=0.1,f0=0.5"), Direction());
+    TiltEstimate unsure{.joint = {Direction(), 0.1_deg},
+                        .leds = {},
+                        .lobes = std::vector<TiltLobe>(4, {.diffuse = 0, .alpha = 0.1, .f0 = 0.5}),
+                        .waviness = {}};
+    TiltEstimate wavy = unsure;
+    wavy.joint.u = Radians(0);
+    wavy.waviness = 0.1_deg * std::sqrt(2.0);
+    using Change = std::function<SampleSet(const SampleSet&, const TiltEstimate&)>;
+    for (const Change& change : {Change(withTiltUncertainty), Change(tiltCorrected)}) {
+        const auto with = [&](const TiltEstimate& estimate) {
+            return addedOnTheFlank(flat,
+                                   [&](const SampleSet& set) { return change(set, estimate); });
+        };
+        EXPECT_GT(with(wavy), 0.01);
+        EXPECT_NEAR(with(wavy), with(unsure), 1e-9);
+    }
 }
 
 }  // namespace
