@@ -14,6 +14,8 @@ namespace gonio::daemon {
 namespace {
 
 constexpr int kMostLeds = 64;
+constexpr int kKinds = 3;  // mirror, black, white
+constexpr Seconds kClocksApart = std::chrono::minutes(5);
 
 /// Seconds since 1970; empty for what is no ISO 8601 date as this program writes it.
 std::optional<std::time_t> secondsOf(const std::string& dateUtc) {
@@ -84,7 +86,7 @@ Result<CalibrationSet> parseSet(Store& store,
     CalibrationSet set = otherwise;
     std::string_view rest = text;
     int count = 0;
-    for (bool more = true; more; ++count) {
+    for (bool more = true; more && count < kKinds; ++count) {
         const std::size_t plus = rest.find('+');
         more = plus != std::string_view::npos;
         Result<CalibrationRecord> one = numbered(store, rest.substr(0, plus), otherwise.mirror.rig);
@@ -114,6 +116,10 @@ std::string whyNot(const CalibrationRecord& calibration,
     const auto today = secondsOf(now.dateUtc);
     if (!then || !today) return name + " has no date that can be read" + runAgain(calibration);
     const Seconds age(std::difftime(*today, *then));
+    if (age < -kClocksApart) {
+        return name + " is dated " + calibration.dateUtc + ", which is still to come: it is " +
+               now.dateUtc + "; set the computer's clock right" + runAgain(calibration);
+    }
     const Seconds longest = calibration.kind == "mirror" ? limits.mirror : limits.tiles;
     if (age > longest) {
         const Seconds hour = std::chrono::hours(1);

@@ -43,7 +43,8 @@ struct RigNow {
     std::optional<double> celsius;  ///< of the LED board
     std::string dateUtc;            ///< ISO 8601
 };
-/// Why a calibration is not good now, and what to run; empty: it is.
+/// Why a calibration is not good now, and what to run; empty: it is. One that is dated more than
+/// five minutes from now is not: a clock is wrong, and its age is not known.
 [[nodiscard]] std::string whyNot(const CalibrationRecord& calibration,
                                  const RigNow& now,
                                  const ValidityLimits& limits);

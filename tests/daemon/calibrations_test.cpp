@@ -45,11 +45,19 @@ TEST(CalibrationValidity, SaysWhyNotAndWhatToRun) {
     bad = white();
     bad.dateUtc = "2026-02-28T11:59:59Z";
     expect(bad, {"24.0 h old", "good for 24.0 h", "gonio calibrate white"});
+    bad.dateUtc = "2026-03-01T12:05:01Z";
+    expect(bad, {"2026-03-01T12:05:01Z, which is still to come", "2026-03-01T12:00:00Z", "clock"});
     bad.dateUtc = "yesterday";
     expect(bad, {"no date"});
     bad = white();
     bad.celsius = 20.9;
     expect(bad, {"20.9 degC", "26.0 degC", "5.0 K"});
+}
+
+TEST(CalibrationValidity, ClocksMayDifferByMinutes) {
+    CalibrationRecord soon = white();
+    soon.dateUtc = "2026-03-01T12:05:00Z";
+    EXPECT_EQ(whyNotNow(soon), "");
 }
 
 TEST(CalibrationValidity, LensMapLivesLongerThanTiles) {
@@ -120,6 +128,7 @@ TEST_F(CalibrationsInStore, WhatIsNoSetIsRefused) {
                             "1+2+",
                             "+",
                             "1+2+3+7",
+                            "1+2+3+8",  // the fourth is not even looked for
                             "1+2",
                             "3+2+1",
                             "1.5",
