@@ -14,21 +14,26 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The set that a sample was measured with; the newest where its name is not one of these.
-Result<CalibrationSet> measuredWith(Store& store, const proc::SampleInfo& info) {
-    Result<CalibrationSet> newest = newestSet(store, info.rigSerial);
-    if (!newest) return newest;
-    Result<CalibrationSet> own = parseSet(store, info.calibrationId, *newest);
-    return own ? own : newest;
+/// The set that a sample was measured with; `newest` where its name is not one of these, as names
+/// once were not.
+Result<CalibrationSet> measuredWith(Store& store,
+                                    const proc::SampleInfo& info,
+                                    const CalibrationSet& newest) {
+    Result<CalibrationSet> own = parseSet(store, info.calibrationId, newest);
+    if (own) return own;
+    if (own.error().kind == ErrorKind::Usage) return newest;
+    return own.error().in("what the sample was measured with");
 }
 
 Result<CalibrationSet> wantedSet(Store& store,
                                  const proc::SampleInfo& info,
                                  const std::string& calibration) {
-    if (calibration.empty()) return newestSet(store, info.rigSerial);
-    const Result<CalibrationSet> own = measuredWith(store, info);
-    if (!own) return own;
-    return parseSet(store, calibration, *own);
+    const Result<CalibrationSet> newest = newestSet(store, info.rigSerial);
+    if (!newest || calibration.empty()) return newest;
+    const bool whole = calibration.find('+') != std::string::npos;
+    const Result<CalibrationSet> others = whole ? newest : measuredWith(store, info, *newest);
+    if (!others) return others;
+    return parseSet(store, calibration, *others);
 }
 
 /// The sample's raw signals and both references hold every LED and band that it has.

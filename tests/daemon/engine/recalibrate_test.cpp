@@ -107,6 +107,27 @@ TEST_F(StoredSample, WithItsOwnCalibrationIsTheSame) {
     EXPECT_EQ(Json::parse(*same)["calibration"], "1+2+3");
 }
 
+TEST_F(StoredSample, OneNumberTakesThePlaceOfItsKindInWhatItWasMeasuredWith) {
+    keepReference("white", kBothLeds, kWhite);  // 4
+    const auto with = again("4");
+    ASSERT_TRUE(with) << with.error().message;
+    EXPECT_EQ(Json::parse(*with)["calibration"], "1+2+4");
+}
+
+TEST_F(StoredSample, NoOtherCalibrationTakesThePlaceOfOneThatIsLost) {
+    keepSample("1+2+9");  // a white that the store has not
+    expectRefused("1", ErrorKind::Quality, "what the sample was measured with: calibration 9");
+    const auto named = again("1+2+3");
+    EXPECT_TRUE(named) << named.error().message;
+}
+
+TEST_F(StoredSample, OfAnOlderNameIsCompletedByTheNewest) {
+    keepSample("R/2025-12-01");
+    const auto with = again("3");
+    ASSERT_TRUE(with) << with.error().message;
+    EXPECT_EQ(Json::parse(*with)["calibration"], "1+2+3");
+}
+
 TEST_F(StoredSample, ReferenceOfFewerLedsIsRefused) {
     keepReference("white", {0}, kWhite);
     expectRefused("", ErrorKind::File, "white reference: 1 LEDs, wanted 2");
