@@ -102,11 +102,13 @@ Result<std::string> workedOut(const Desk& desk, const Original& before, const Ca
 Result<std::string> recalibrate(const Desk& desk, const JobRequest& request) {
     const Result<Original> before = original(desk.store, request.name);
     if (!before) return before.error();
+    if (Result<void> on = desk.goOn(); !on) return on.error();
     const Result<CalibrationSet> set =
         wantedSet(desk.store, before->sample.info, request.calibration);
     if (!set) return set.error();
     const Result<std::string> bytes = workedOut(desk, *before, *set);
     if (!bytes) return bytes.error();
+    if (Result<void> on = desk.goOn(); !on) return on.error();
     SampleRecord record = before->record;
     std::string earlier;
     const bool identical = *bytes == before->bytes;

@@ -84,8 +84,11 @@ protected:
                                      {.file = *bytes, .raw = raw(kBothLeds, kGrey)}));
     }
 
-    Result<std::string> again(const std::string& calibration = "") {
-        const Desk desk{.store = *store, .profile = profile, .utcNow = [] { return "t"; }};
+    Result<std::string> again(
+        const std::string& calibration = "",
+        const std::function<Result<void>()>& goOn = [] { return Result<void>(); }) {
+        const Desk desk{
+            .store = *store, .profile = profile, .utcNow = [] { return "t"; }, .goOn = goOn};
         return recalibrate(
             desk, {.kind = JobKind::Recalibrate, .name = "tile", .calibration = calibration});
     }
@@ -126,6 +129,24 @@ TEST_F(StoredSample, OfAnOlderNameIsCompletedByTheNewest) {
     const auto with = again("3");
     ASSERT_TRUE(with) << with.error().message;
     EXPECT_EQ(Json::parse(*with)["calibration"], "1+2+3");
+}
+
+TEST_F(StoredSample, IsLetBeWhenTheJobIsEndedMeanwhile) {
+    const auto before = store->sample("tile");
+    ASSERT_TRUE(before);
+    keepReference("white", kBothLeds, 2 * kWhite);
+    int asked = 0;
+    const Error ended{ErrorKind::Interrupted, "cancelled"};
+    const auto refused = again("", [&]() -> Result<void> {
+        ++asked;
+        return ended;
+    });
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().kind, ErrorKind::Interrupted);
+    EXPECT_GT(asked, 0);
+    EXPECT_EQ(store->sample("tile")->file, before->file);
+    EXPECT_TRUE(again());
+    EXPECT_NE(store->sample("tile")->file, before->file);
 }
 
 TEST_F(StoredSample, ReferenceOfFewerLedsIsRefused) {
