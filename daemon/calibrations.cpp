@@ -5,6 +5,7 @@
 #include <ctime>
 #include <utility>
 
+#include "daemon/sequencer.h"
 #include "proc/core/number_text.h"
 #include "proc/formats/file_bytes.h"
 #include "proc/formats/graw_exr.h"
@@ -13,6 +14,8 @@ namespace gonio::daemon {
 namespace {
 
 constexpr int kMostLeds = 64;
+constexpr int kKinds = 3;  // mirror, black, white
+constexpr Seconds kClocksApart = std::chrono::minutes(5);
 
 /// Seconds since 1970; empty for what is no ISO 8601 date as this program writes it.
 std::optional<std::time_t> secondsOf(const std::string& dateUtc) {
@@ -20,6 +23,10 @@ std::optional<std::time_t> secondsOf(const std::string& dateUtc) {
     const char* end = ::strptime(dateUtc.c_str(), "%Y-%m-%dT%H:%M:%SZ", &utc);
     if (end == nullptr || *end != '\0') return std::nullopt;
     return ::timegm(&utc);
+}
+
+std::string nameOf(const CalibrationRecord& calibration) {
+    return calibration.kind + " calibration " + std::to_string(calibration.id);
 }
 
 std::string runAgain(const CalibrationRecord& calibration) {
@@ -79,7 +86,7 @@ Result<CalibrationSet> parseSet(Store& store,
     CalibrationSet set = otherwise;
     std::string_view rest = text;
     int count = 0;
-    for (bool more = true; more; ++count) {
+    for (bool more = true; more && count < kKinds; ++count) {
         const std::size_t plus = rest.find('+');
         more = plus != std::string_view::npos;
         Result<CalibrationRecord> one = numbered(store, rest.substr(0, plus), otherwise.mirror.rig);
@@ -97,7 +104,7 @@ Result<CalibrationSet> parseSet(Store& store,
 std::string whyNot(const CalibrationRecord& calibration,
                    const RigNow& now,
                    const ValidityLimits& limits) {
-    const std::string name = calibration.kind + " calibration " + std::to_string(calibration.id);
+    const std::string name = nameOf(calibration);
     if (calibration.rig != now.serial) {
         return name + " is of rig " + calibration.rig + ", not of " + now.serial;
     }
@@ -109,6 +116,10 @@ std::string whyNot(const CalibrationRecord& calibration,
     const auto today = secondsOf(now.dateUtc);
     if (!then || !today) return name + " has no date that can be read" + runAgain(calibration);
     const Seconds age(std::difftime(*today, *then));
+    if (age < -kClocksApart) {
+        return name + " is dated " + calibration.dateUtc + ", which is still to come: it is " +
+               now.dateUtc + "; set the computer's clock right" + runAgain(calibration);
+    }
     const Seconds longest = calibration.kind == "mirror" ? limits.mirror : limits.tiles;
     if (age > longest) {
         const Seconds hour = std::chrono::hours(1);
@@ -151,6 +162,24 @@ Result<PlacementSignals> binned(const std::filesystem::path& raw, const LensReco
     return signals;
 }
 
+Result<void> checkComplete(const PlacementSignals& signals,
+                           std::size_t leds,
+                           const std::string& what) {
+    if (signals.size() != leds) {
+        return Error{
+            ErrorKind::File,
+            what + ": " + std::to_string(signals.size()) + " LEDs, wanted " + std::to_string(leds)};
+    }
+    for (std::size_t led = 0; led < leds; ++led) {
+        for (const Band band : kBands) {
+            if (signals[led][index(band)].size() > 0) continue;
+            return Error{ErrorKind::File,
+                         what + ": " + stateName({static_cast<int>(led), band}) + " is missing"};
+        }
+    }
+    return {};
+}
+
 Result<ReferenceRecord> readReference(Store& store,
                                       const CalibrationRecord& reference,
                                       const CalibrationRecord& mirror,
@@ -165,6 +194,9 @@ Result<ReferenceRecord> readReference(Store& store,
     if (*binnedWith && (*binnedWith)->id == mirror.id) return record;
     Result<PlacementSignals> again = binned(reference.raw, lens);
     if (!again) return again.error();
+    const Result<void> complete =
+        checkComplete(*again, record->signals.size(), reference.raw.string());
+    if (!complete) return complete.error().in(nameOf(reference));
     record->signals = std::move(*again);
     return record;
 }

@@ -43,13 +43,15 @@ struct RigNow {
     std::optional<double> celsius;  ///< of the LED board
     std::string dateUtc;            ///< ISO 8601
 };
-/// Why a calibration is not good now, and what to run; empty: it is.
+/// Why a calibration is not good now, and what to run; empty: it is. One that is dated more than
+/// five minutes from now is not: a clock is wrong, and its age is not known.
 [[nodiscard]] std::string whyNot(const CalibrationRecord& calibration,
                                  const RigNow& now,
                                  const ValidityLimits& limits);
 
 [[nodiscard]] Result<LensRecord> readLens(const CalibrationRecord& mirror);
-/// Its signals as this lens map bins them. `mirror` and `lens` are one calibration.
+/// Its signals as this lens map bins them, all bands of each of its LEDs. `mirror` and `lens` are
+/// one calibration. File error where a state is missing.
 [[nodiscard]] Result<ReferenceRecord> readReference(Store& store,
                                                     const CalibrationRecord& reference,
                                                     const CalibrationRecord& mirror,
@@ -64,5 +66,9 @@ struct LoadedSet {
 /// All signals of a raw capture as a lens map bins them, by LED; LEDs that it lacks are left out.
 [[nodiscard]] Result<PlacementSignals> binned(const std::filesystem::path& raw,
                                               const LensRecord& lens);
+/// File error unless there are `leds` LEDs, with all of their bands.
+[[nodiscard]] Result<void> checkComplete(const PlacementSignals& signals,
+                                         std::size_t leds,
+                                         const std::string& what);
 
 }  // namespace gonio::daemon

@@ -9,8 +9,7 @@
 namespace gonio::daemon {
 namespace {
 
-// Offsets of effective times: what is corrected, and what is no offset but another picture.
-constexpr double kSmallest = 5e-4, kSigmas = 3, kAbsurd = 0.5;
+constexpr double kSmallest = 5e-4, kSigmas = 4;  // of offsets of effective times
 
 void describe(const Frame& frame, Band band, std::vector<proc::RawExposure>& bracket) {
     if (bracket.empty() || bracket.back().captureId != frame.captureId) {
@@ -31,15 +30,16 @@ proc::NominalUncertainty nominalOf(const RigProfile& profile) {
     return nominal;
 }
 
-/// Something is off by more than noise, and by so much that it matters.
+/// Something is off by more than noise, by so much that it matters, and by no more than a rig can
+/// be off: beyond that it is another light or another picture.
 bool worthCorrecting(const proc::ScaleReport& report) {
-    const auto sane = [](const proc::GroupScale& group) {
-        return std::abs(group.offset.size) < kAbsurd;
+    const auto plausible = [](const proc::GroupScale& group) {
+        return std::abs(group.offset.size) < kSigmas * group.uNominal;
     };
     const auto off = [](const proc::GroupScale& group) {
         return std::abs(group.offset.size) > std::max(kSmallest, kSigmas * group.offset.u);
     };
-    return std::all_of(report.groups.begin(), report.groups.end(), sane) &&
+    return std::all_of(report.groups.begin(), report.groups.end(), plausible) &&
            std::any_of(report.groups.begin(), report.groups.end(), off);
 }
 
@@ -59,15 +59,15 @@ Result<Processed> Processing::operator()(State state,
     const Stopwatch processing(clock);
     Result<proc::MergedState> merged = proc::mergeSums(sums.sums());
     if (!merged) return merged.error();
+    const std::optional<LightStep> step = lightStep(state, sums.sums(), *merged);
     const proc::ScaleReport scales = proc::groupScales(sums.sums(), *merged, nominalOf(profile));
-    const bool correct = worthCorrecting(scales);
+    const bool correct = !step && worthCorrecting(scales);
     if (correct) {
         proc::correctScales(sums, scales);
         merged = proc::mergeSums(sums.sums());
         if (!merged) return merged.error();
     }
     for (proc::RawExposure& exposure : exposures) describe(scales, correct, exposure);
-    const std::optional<LightStep> step = lightStep(state, sums.sums(), *merged);
     Processed done{.signal = binning.bin(*merged),
                    .raw = {.merged = std::move(*merged), .bracket = std::move(exposures)},
                    .lightStep = step,

@@ -18,9 +18,9 @@ struct LightStep {
     std::size_t frames = 0;  ///< of the bracket
 };
 
-/// `merged` is the merge of the sums. Changes below 3 % are let be: an exposure that lasts 0.2 us
-/// longer than granted, or a dimmed level that is off, makes the frames of a group brighter by as
-/// much, and both are in the calibration too.
+/// `merged` is the merge of the sums. Changes below 3 % are let be, and what wrong scales explain:
+/// an exposure that lasts longer than granted, or a dimmed level that is off, makes all frames of a
+/// group brighter, and both are in the calibration too.
 [[nodiscard]] std::optional<LightStep> lightStep(State state,
                                                  const proc::BracketSums& sums,
                                                  const proc::MergedState& merged);

@@ -18,6 +18,10 @@ std::string degrees(Radians angle) { return fixed(angle.degrees(), 2) + " degree
 
 /// "tilt: 0.52 degrees (u 0.01 degrees), corrected".
 std::string described(const proc::TiltEstimate& estimate, bool corrected) {
+    if (!estimate.determined) {
+        return "tilt and waviness: not determined, as the lobe is none that can be fitted; " +
+               degrees(estimate.joint.u) + " of tilt are in the uncertainties";
+    }
     return "tilt: " + degrees(estimate.joint.tilt()) + " (u " + degrees(estimate.joint.u) + "), " +
            (corrected ? "corrected" : "not corrected") +
            "; waviness: " + degrees(estimate.waviness);
@@ -89,6 +93,7 @@ Result<proc::SampleSet> referredToItsNormal(proc::SampleSet sample,
     } else if (estimate->joint.tilt() > limits.warned) {
         log::warning("the sample is tilted by " + degrees(estimate->joint.tilt()));
     }
+    if (!estimate->determined) log::warning(described(*estimate, false));
     const bool corrected = worthCorrecting(*estimate, limits);
     proc::SampleSet flat = corrected ? proc::tiltCorrected(sample, *estimate)
                                      : proc::withTiltUncertainty(sample, *estimate);

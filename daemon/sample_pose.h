@@ -1,7 +1,9 @@
 #pragma once
 // The check of how a sample lay (proc/quality/tilt.h), and what follows from it: a tilt that is
 // sure and does harm is corrected, any other goes into the uncertainties; a large one is warned of;
-// a wavy sample is refused. The verdict stands in the sample's information with its evidence.
+// a wavy sample is refused. Where a lobe does not tell its tilt, that is warned of, and what
+// samples are seated to goes into the uncertainties. The verdict stands in the sample's information
+// with its evidence.
 
 #include "proc/core/result.h"
 #include "proc/table/sample_set.h"

@@ -118,7 +118,6 @@ void Sensor::darkElectrons(double darkTime, std::uint64_t first, std::span<doubl
 }
 
 std::vector<double> Sensor::columnErrors(const View& view, std::uint64_t shotKey) const {
-    if (errors_.columnNoise == 0 && errors_.nonLinearity == 0) return {};
     std::vector<double> columns(static_cast<std::size_t>(view.size.width));
     const std::uint64_t key = mixed(shotKey, 3);
     for (std::size_t x = 0; x < columns.size(); ++x) {
@@ -139,14 +138,13 @@ void Sensor::exposeRow(const Shot& shot,
     darkElectrons(shot.darkTime, firstPixel, dark);
     const auto rate = shot.rate == nullptr ? std::span<const float>() : shot.rate->row(row);
     const Converter converter(digits_, errors_.nonLinearity);
-    const bool faithful = shot.columns.empty();
     for (std::size_t x = 0; x < out.size(); ++x) {
         const std::uint64_t pixel = firstPixel + x;
         const double light = rate.empty() ? 0 : double{rate[x]} * shot.gain * double{response[x]};
         const double collected =
             std::min(kFullWell, poisson(light + dark[x], uniform(shot.shotKey, pixel)));
         double electrons = collected + kReadNoise * gaussian(shot.readKey, pixel);
-        if (!faithful) electrons += converter.bow(collected) + shot.columns[x];
+        if (!shot.faithful) electrons += converter.bow(collected) + shot.columns[x];
         out[x] = converter.digitised(electrons);
     }
 }
@@ -159,13 +157,15 @@ Image<std::uint16_t> Sensor::expose(const Image<float>* rate,
                                     int binning) const {
     const double seconds = static_cast<double>(exposure.count()) * 1e-9;
     const std::uint64_t shotKey = mixed(mixed(mixed(key.seed, key.planStep), key.frameIndex), 1);
+    const bool faithful = errors_.columnNoise == 0 && errors_.nonLinearity == 0;
     const Shot shot{
         .rate = rate,
         .gain = level * seconds,
         .darkTime = std::exp2((errors_.celsius - 25) / errors_.doublingKelvin) * seconds,
         .shotKey = shotKey,
         .readKey = mixed(shotKey, 2),
-        .columns = columnErrors(view, shotKey)};
+        .faithful = faithful,
+        .columns = faithful ? std::vector<double>() : columnErrors(view, shotKey)};
     Image<std::uint16_t> full(view.size);
     parallelFor(static_cast<std::size_t>(view.size.height), [&](IndexRange rows) {
         for (std::size_t y = rows.begin; y < rows.end; ++y) {

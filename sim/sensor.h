@@ -92,8 +92,8 @@ private:
         double gain = 0;      // level times seconds
         double darkTime = 0;  // seconds at 25 degC that give the dark current of the exposure
         std::uint64_t shotKey = 0, readKey = 0;
-        // Electrons by which each column of the view is off; none where all is read as it is.
-        std::vector<double> columns{};
+        bool faithful = true;           // read as it is: no bow, no column is off
+        std::vector<double> columns{};  // unless faithful: electrons by which each is off
     };
     [[nodiscard]] std::vector<double> columnErrors(const View& view, std::uint64_t shotKey) const;
     void exposeRow(const Shot& shot, const View& view, int row, std::span<std::uint16_t> out) const;

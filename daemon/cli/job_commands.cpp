@@ -17,8 +17,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string percent(double fraction) { return fixed(100 * fraction, 2) + " %"; }
-
 std::string text(const Json& json, const char* member) { return json.at(member); }
 
 std::string seconds(const Json& json, const char* member) {
@@ -40,7 +38,7 @@ std::string calibratedLine(const Json& done, Reference reference) {
 std::string measuredLine(const Json& done) {
     return text(done, "name") + ": " + std::to_string(done.at("measured_cells").get<int>()) +
            " BRDF samples, median uncertainty " +
-           percent(done.at("median_relative_uncertainty").get<double>()) + " (k = 1), " +
+           perCent(done.at("median_relative_uncertainty").get<double>()) + " (k = 1), " +
            seconds(done, "rig_seconds") + " on the rig (planned " +
            fixed(done.at("planned").at("seconds").get<double>(), 1) + " s), " +
            seconds(done, "compute_seconds") + " computing; " + text(done, "file");
@@ -53,7 +51,7 @@ Json toJson(const CaptureGoal& goal) {
 }
 
 std::string percentOr(const Json& fraction) {
-    return fraction.is_number() ? percent(fraction.get<double>()) : "-";
+    return fraction.is_number() ? perCent(fraction.get<double>()) : "-";
 }
 
 /// "random, systematic, total" by rows of worst, 95th percentile and median.
@@ -120,7 +118,7 @@ Result<void> verifyWhite(const CommonOptions& common, const VerifyOptions& optio
     const auto done = FollowedJob(common, client, "white").run(request.dump());
     return shown(common, done, [&](const Json& json) {
         std::cout << "white has changed by at most "
-                  << percent(json.at("worst_change").get<double>()) << " since "
+                  << perCent(json.at("worst_change").get<double>()) << " since "
                   << text(json, "calibrated") << "\n";
     });
 }

@@ -18,8 +18,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-std::string percent(double fraction) { return fixed(100 * fraction, 2) + " %"; }
-
 std::string padded(const std::string& text, std::size_t width) {
     return text.size() >= width ? text : text + std::string(width - text.size(), ' ');
 }
@@ -93,9 +91,9 @@ void printTable(const std::vector<Scored>& scored) {
     for (const auto& [file, info, score] : scored) {
         std::cout << padded(info.name, 18) << padded(fixed(info.rigSeconds, 1), 8)
                   << padded(fixed(info.computeSeconds, 1), 11)
-                  << padded(percent(score.medianRelativeError), 14)
-                  << padded(percent(score.p95RelativeError), 12)
-                  << padded(percent(score.within2u), 11) << score.cells << "\n";
+                  << padded(perCent(score.medianRelativeError), 14)
+                  << padded(perCent(score.p95RelativeError), 12)
+                  << padded(perCent(score.within2u), 11) << score.cells << "\n";
     }
 }
 

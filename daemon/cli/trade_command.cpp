@@ -46,8 +46,6 @@ Json toJson(const proc::TradeRow& row) {
             {"too_dim_cells", row.counts.tooDim}};
 }
 
-std::string perCent(double relative) { return fixed(100 * relative, 2) + " %"; }
-
 void printRows(const std::vector<proc::TradeRow>& rows) {
     std::vector<std::vector<std::string>> table{
         {"rig", "levels", "material", "wanted", "seconds", "random", "systematic", "total"}};

@@ -145,8 +145,9 @@ private:
     [[nodiscard]] Error noRig() const;
     void runPending(const std::stop_token& stop);
     [[nodiscard]] Result<std::string> runOn(const JobRequest& request, Monitor& monitor);
-    [[nodiscard]] Result<std::string> runAtDesk(const JobRequest& request);
+    [[nodiscard]] Result<std::string> runAtDesk(const JobRequest& request, Monitor& monitor);
     void settle(JobRecord& job, const Result<std::string>& outcome, const Monitor& monitor);
+    void lookAfterRig(JobRecord& job, const Error& why);
     [[nodiscard]] Result<std::uint64_t> reserveSteps();
 
     void advance(EngineEvent event, const std::string& detail = {});

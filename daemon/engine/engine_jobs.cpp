@@ -40,6 +40,10 @@ public:
     Result<void> step(const std::string& what) override {
         engine_.world_.alive();
         tell(what);
+        return goOn();
+    }
+    /// Whether the job may, or has to end.
+    Result<void> goOn() {
         if (!wished()) return {};
         ended_ = true;
         return cancelled(job_);
@@ -156,15 +160,18 @@ Result<std::string> Engine::runOn(const JobRequest& request, Monitor& monitor) {
 }
 
 /// A job that needs no rig; one that is there is kept alive meanwhile.
-Result<std::string> Engine::runAtDesk(const JobRequest& request) {
-    const Desk desk{.store = store_, .profile = profile_, .utcNow = world_.utcNow};
+Result<std::string> Engine::runAtDesk(const JobRequest& request, Monitor& monitor) {
+    const Desk desk{
+        .store = store_, .profile = profile_, .utcNow = world_.utcNow, .goOn = [&monitor] {
+            return monitor.goOn();
+        }};
     const auto work = [&] { return recalibrate(desk, request); };
     if (!rig_) return guarded("recalibrate", work);
     return alongside(
         *rig_, [this] { world_.alive(); }, work);
 }
 
-/// How it ended, and whether the rig is still there.
+/// How it ended.
 void Engine::settle(JobRecord& job, const Result<std::string>& outcome, const Monitor& monitor) {
     job.endedUtc = world_.utcNow();
     if (outcome) {
@@ -174,10 +181,14 @@ void Engine::settle(JobRecord& job, const Result<std::string>& outcome, const Mo
     }
     job.error = outcome.error();
     job.state = monitor.verdict();
+}
+
+/// After a job on it that did not succeed: it may be the reason.
+void Engine::lookAfterRig(JobRecord& job, const Error& why) {
     if (!rig_) return;
     if (const auto there = rig_->status(); !there) {
         job.state = JobState::Interrupted;
-        lost(outcome.error());
+        lost(why);
     } else if (const auto dark = rig_->darken(); !dark) {
         log::warning(dark.error().message);
     }
@@ -193,8 +204,9 @@ void Engine::runPending(const std::stop_token& stop) {
     Monitor monitor(*this, stop, what);
     const bool atDesk = job.request.kind == JobKind::Recalibrate;
     const Result<std::string> outcome =
-        atDesk ? runAtDesk(job.request) : runOn(job.request, monitor);
+        atDesk ? runAtDesk(job.request, monitor) : runOn(job.request, monitor);
     settle(job.record, outcome, monitor);
+    if (!atDesk && !outcome) lookAfterRig(job.record, outcome.error());
     if (job.record.error) log::warning(job.record.error->message);
     if (Result<void> kept = logbook_.endJob(job.record); !kept) log::error(kept.error().message);
     publishCalibrations();

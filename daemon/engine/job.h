@@ -82,6 +82,8 @@ struct Desk {
     Store& store;
     const RigProfile& profile;
     std::function<std::string()> utcNow;
+    /// Asked before anything is kept, perhaps on a thread of its own. An error ends the job.
+    std::function<Result<void>()> goOn = [] { return Result<void>(); };
 };
 /// Applies a calibration to the raw capture of a stored sample. With the one that it was measured
 /// with the same bytes come out, and nothing is kept; else the sample of that name is the new one,

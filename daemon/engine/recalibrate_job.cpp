@@ -14,33 +14,41 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The set that a sample was measured with; the newest where its name is not one of these.
-Result<CalibrationSet> measuredWith(Store& store, const proc::SampleInfo& info) {
-    Result<CalibrationSet> newest = newestSet(store, info.rigSerial);
-    if (!newest) return newest;
-    Result<CalibrationSet> own = parseSet(store, info.calibrationId, *newest);
-    return own ? own : newest;
+/// The set that a sample was measured with; `newest` where its name is not one of these, as names
+/// once were not.
+Result<CalibrationSet> measuredWith(Store& store,
+                                    const proc::SampleInfo& info,
+                                    const CalibrationSet& newest) {
+    Result<CalibrationSet> own = parseSet(store, info.calibrationId, newest);
+    if (own) return own;
+    if (own.error().kind == ErrorKind::Usage) return newest;
+    return own.error().in("what the sample was measured with");
 }
 
 Result<CalibrationSet> wantedSet(Store& store,
                                  const proc::SampleInfo& info,
                                  const std::string& calibration) {
-    if (calibration.empty()) return newestSet(store, info.rigSerial);
-    const Result<CalibrationSet> own = measuredWith(store, info);
-    if (!own) return own;
-    return parseSet(store, calibration, *own);
+    const Result<CalibrationSet> newest = newestSet(store, info.rigSerial);
+    if (!newest || calibration.empty()) return newest;
+    const bool whole = calibration.find('+') != std::string::npos;
+    const Result<CalibrationSet> others = whole ? newest : measuredWith(store, info, *newest);
+    if (!others) return others;
+    return parseSet(store, calibration, *others);
 }
 
-/// The signals hold every LED and band that the sample has.
+/// The sample's raw signals and both references hold every LED and band that it has.
 Result<void> checkComplete(const PlacementSignals& signals,
-                           const proc::SampleSet& sample,
-                           const std::string& file) {
-    bool complete = signals.size() == sample.leds.size();
-    for (const auto& led : signals) {
-        for (const proc::CellSignal& band : led) complete = complete && band.size() > 0;
+                           const LoadedSet& references,
+                           const SampleRecord& sample,
+                           std::size_t leds) {
+    const Result<void> own = daemon::checkComplete(signals, leds, sample.raw.string());
+    if (!own) return own;
+    for (const ReferenceRecord* one : {&references.black, &references.white}) {
+        const Result<void> fits =
+            daemon::checkComplete(one->signals, leds, "the " + one->info.name + " reference");
+        if (!fits) return fits;
     }
-    if (complete) return {};
-    return Error{ErrorKind::File, file + ": not all states of the sample are there"};
+    return {};
 }
 
 std::vector<Radians> anglesOf(const proc::SampleSet& sample) {
@@ -73,7 +81,7 @@ Result<std::string> workedOut(const Desk& desk, const Original& before, const Ca
     const Result<PlacementSignals> signals = binned(before.record.raw, loaded->lens);
     if (!signals) return signals.error();
     const Result<void> complete =
-        checkComplete(*signals, before.sample, before.record.raw.string());
+        checkComplete(*signals, *loaded, before.record, before.sample.leds.size());
     if (!complete) return complete.error();
     proc::SampleInfo info = before.sample.info;
     info.calibrationId = set.id();
@@ -94,11 +102,13 @@ Result<std::string> workedOut(const Desk& desk, const Original& before, const Ca
 Result<std::string> recalibrate(const Desk& desk, const JobRequest& request) {
     const Result<Original> before = original(desk.store, request.name);
     if (!before) return before.error();
+    if (Result<void> on = desk.goOn(); !on) return on.error();
     const Result<CalibrationSet> set =
         wantedSet(desk.store, before->sample.info, request.calibration);
     if (!set) return set.error();
     const Result<std::string> bytes = workedOut(desk, *before, *set);
     if (!bytes) return bytes.error();
+    if (Result<void> on = desk.goOn(); !on) return on.error();
     SampleRecord record = before->record;
     std::string earlier;
     const bool identical = *bytes == before->bytes;

@@ -45,5 +45,6 @@ std::string shortest(float value) { return toText(value); }
 std::string fixed(double value, int decimals) {
     return toText(value, std::chars_format::fixed, decimals);
 }
+std::string perCent(double fraction) { return fixed(100 * fraction, 2) + " %"; }
 
 }  // namespace gonio

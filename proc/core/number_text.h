@@ -19,5 +19,7 @@ namespace gonio {
 [[nodiscard]] std::string shortest(float value);
 /// Fixed number of decimals, for tables and labels.
 [[nodiscard]] std::string fixed(double value, int decimals);
+/// A fraction as "1.25 %".
+[[nodiscard]] std::string perCent(double fraction);
 
 }  // namespace gonio

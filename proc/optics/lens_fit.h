@@ -1,8 +1,9 @@
 #pragma once
 // The lens map of one rig from mirror spots: where each direction was seen that a light and a wedge
-// make known. Wedges and lights have tolerances, and what a wedge is wrong by moves all of its
-// spots together; so the errors of all are estimated along with the lens, each drawn to zero by its
-// tolerance, and what stays unknown of them is in the covariance of the map.
+// make known. Wedges have tolerances, and what a wedge is wrong by moves all of its spots together;
+// so their errors are estimated along with the lens, each drawn to zero by its tolerance, and what
+// stays unknown of them is in the covariance of the map. The lights are taken to stand where the
+// rig says.
 
 #include <Eigen/Core>
 #include <span>

@@ -75,6 +75,8 @@ public:
             return problem.shots[a].option.reach > problem.shots[b].option.reach;
         });
         prices_ = coverBound(problem);
+        for (std::size_t j = 0; j < problem.needs.size(); ++j)
+            unit_ += prices_.prices[j] * problem.needs[j].information / kNeedUnits;
         for (const CoverNeed& need : problem.needs) {
             const auto sees = [&](std::size_t g) {
                 return need.rate <= problem.shots[g].option.reach;
@@ -82,6 +84,7 @@ public:
             due_.push_back(static_cast<std::size_t>(
                 std::find_if_not(order_.begin(), order_.end(), sees) - order_.begin()));
         }
+        readRoundedAway();
     }
 
     /// The best that costs less than `limit`, of the labels within `width`. `light` may be null.
@@ -154,9 +157,12 @@ private:
                           .lacking = label.lacking,
                           .choice = {.from = at.index, .more = more}};
             spend(reached, shot, more);
-            const Nanoseconds relaxed = remaining(reached);
-            if (relaxed >= at.limit - cost) break;  // with more frames the sum only rises
-            reached.least = cost + std::max(whole, relaxed);
+            const double relaxed = remaining(reached, at.shot + 1);
+            const double allowed = Seconds(at.limit - cost).count();
+            // With more frames the sum only rises, but for the rounding of what they tell.
+            if (relaxed - unit_ >= allowed) break;
+            if (relaxed >= allowed) continue;
+            reached.least = cost + std::max(whole, rounded(relaxed));
             next.push_back(std::move(reached));
         }
     }
@@ -196,15 +202,36 @@ private:
         }
     }
 
-    /// What the rest costs at least.
-    [[nodiscard]] Nanoseconds remaining(const Label& label) const {
+    /// What more frames of the shots from each on may tell each need beyond their own, in units:
+    /// what was rounded away of the frames that these shots have.
+    void readRoundedAway() {
+        const std::size_t needs = problem_.needs.size();
+        roundedAway_.assign(order_.size() + 1, std::vector<double>(needs, 0.0));
+        for (std::size_t k = order_.size(); k-- > 0;) {
+            const CoverShot& shot = problem_.shots[order_[k]];
+            for (std::size_t j = 0; j < needs; ++j) {
+                const CoverNeed& need = problem_.needs[j];
+                const double share =
+                    shot.option.information(need.rate, shot.have) / need.information;
+                const double exact = std::min(1.0, share) * kNeedUnits;
+                const double lost = exact - needUnits(shot.option, need, shot.have);
+                roundedAway_[k][j] = roundedAway_[k + 1][j] + std::max(0.0, lost);
+            }
+        }
+    }
+
+    /// What the rest costs at least, of the shots from `shot` on: seconds.
+    [[nodiscard]] double remaining(const Label& label, std::size_t shot) const {
         double seconds = 0;
         for (std::size_t j = 0; j < label.lacking.size(); ++j) {
-            seconds +=
-                prices_.prices[j] * problem_.needs[j].information * label.lacking[j] / kNeedUnits;
+            const double units = std::max(0.0, label.lacking[j] - roundedAway_[shot][j]);
+            seconds += prices_.prices[j] * problem_.needs[j].information * units / kNeedUnits;
         }
-        // Rounded down, and below what rounding in the sums could add.
-        return Nanoseconds(static_cast<std::int64_t>(seconds * (1 - kRounding) * 1e9));
+        return seconds * (1 - kRounding);  // below what rounding in the sums could add
+    }
+
+    [[nodiscard]] static Nanoseconds rounded(double seconds) {
+        return Nanoseconds(static_cast<std::int64_t>(seconds * 1e9));
     }
 
     /// The cheapest of the labels after the last shot, followed back.
@@ -230,6 +257,8 @@ private:
     std::vector<std::size_t> order_;  // shots by falling reach
     std::vector<std::size_t> due_;    // of each need: how many of them see its pixel
     CoverBound prices_;
+    double unit_ = 0;                               // seconds that one unit of every need is worth
+    std::vector<std::vector<double>> roundedAway_;  // from each shot on, of each need: units
     bool proven_ = true;
 };
 

@@ -13,10 +13,6 @@ bool PlanCell::usable() const {
 
 bool PlanCell::blinding() const { return std::isinf(rate) && rate > 0; }
 
-std::string stateName(int led, Band band) {
-    return "LED " + std::to_string(led) + " " + std::string(letter(band));
-}
-
 std::vector<PlanCell> pilotCells(const CellSignal& signal,
                                  const Responsivity& responsivity,
                                  const Binning& binning) {

@@ -3,7 +3,6 @@
 // histogram) how bright its pixels are.
 
 #include <span>
-#include <string>
 #include <vector>
 
 #include "proc/core/bands.h"
@@ -33,9 +32,6 @@ struct StatePilot {
     Band band = Band::R;
     std::vector<PlanCell> cells;
 };
-
-/// "LED 2 g".
-[[nodiscard]] std::string stateName(int led, Band band);
 
 /// What a cell's signal means: the calibration turns it into f.
 struct Responsivity {

@@ -18,8 +18,6 @@ constexpr double kAnything = 1e6;      // a relative uncertainty that no cell ne
 constexpr double kStrictest = 1e-5;    // where a budget's search ends
 constexpr double kBudgetStep = 1.002;  // and how finely
 
-std::string perCent(double relative) { return fixed(100 * relative, 2) + " %"; }
-
 Seconds seconds(Nanoseconds time) { return Seconds(time); }
 
 class Planner {

@@ -9,8 +9,8 @@
 //
 // What is chosen: for every state how many frames of which shot (cover.h), and for all states
 // together which exposures are used and of how many dark frames each mean dark frame is made, as
-// these are shared. All of it is the optimum, not a search that may stop short: a stricter goal
-// never gets a cheaper plan. A budget is met by halving the interval of wanted uncertainties.
+// these are shared. All of it is the optimum where the plan says that it is proven: a stricter goal
+// then never gets a cheaper plan. A budget is met by halving the interval of wanted uncertainties.
 //
 // Cells. One that saturates the shortest exposure at the dimmest level cannot be measured. One that
 // lacks information even after maxFrames of the shot that tells it most is given no more than that.

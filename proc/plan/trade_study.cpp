@@ -12,10 +12,10 @@ std::vector<TradeRigKind> bothRigs() {
             {.name = "USB 3, 60 fps", .timing = RigTiming::usb3()}};
 }
 
-std::string perCent(double relative) { return fixed(100 * relative, 2); }
-std::string perCent(const Spread& spread) {
-    return perCent(spread.worst) + " / " + perCent(spread.percentile95) + " / " +
-           perCent(spread.median);
+/// Under a heading that says per cent.
+std::string hundredths(const Spread& spread) {
+    const auto shown = [](double relative) { return fixed(100 * relative, 2); };
+    return shown(spread.worst) + " / " + shown(spread.percentile95) + " / " + shown(spread.median);
 }
 
 void addCsv(std::string& text, const Spread& spread) {
@@ -123,9 +123,9 @@ std::string tradeMarkdown(const std::vector<TradeRow>& rows) {
         const TimeParts& s = row.seconds;
         for (const Seconds part : {s.pilot, s.exposure, s.readout, s.settle, s.dark, s.latency})
             text += " | " + fixed(part.count(), 2);
-        text += " | " + fixed(row.cramerRao.count(), 2) + " | " + perCent(row.predicted.random) +
-                " | " + perCent(row.predicted.systematic) + " | " + perCent(row.predicted.total) +
-                " |\n";
+        text += " | " + fixed(row.cramerRao.count(), 2) + " | " + hundredths(row.predicted.random) +
+                " | " + hundredths(row.predicted.systematic) + " | " +
+                hundredths(row.predicted.total) + " |\n";
     }
     return text;
 }

@@ -19,10 +19,13 @@ namespace {
 constexpr double kLobeShare = 0.4;
 constexpr std::size_t kMostLobeCells = 800, kMostFloorCells = 200;
 constexpr Radians kOutermost = 72_deg;  // beyond, cells are cut and f is steep
-// A fitted lobe is not the real one: by about so much of f.
+// A fitted lobe is not the real one: by about so much of its peak, anywhere. By a share of each
+// cell's own f, the floor of a lobe that is no GGX would decide the fit.
 constexpr double kModelError = 0.02;
-constexpr double kWorstUncertainty = 0.02;  // rad: beyond it nothing is known of the normal
-constexpr double kSteepest = 0.25;          // tan of the largest tilt that is looked for
+// rad: what is known of a normal without looking, as samples are seated by hand. A fit that leaves
+// more than this open tells nothing.
+constexpr double kSeated = 0.02;
+constexpr double kSteepest = 0.25;  // tan of the largest tilt that is looked for
 constexpr int kMostIterations = 50;
 // There is a lobe where it explains so much of chi-square.
 constexpr double kLobeChiSquare = 50, kLobeGain = 1.05;
@@ -32,10 +35,8 @@ constexpr double kLeastShare = 0.3;  // of f in the mirror direction, under half
 struct Sighting {
     Direction wi, wo;
     double f = 0, u = 0;
-    /// How far a fitted f may be off.
-    [[nodiscard]] double sigma() const {
-        return std::max(std::hypot(u, kModelError * f), std::numeric_limits<double>::min());
-    }
+    double sigma = 0;  ///< how far a fitted f may be off
+    bool inLobe = false;
 };
 
 Eigen::Matrix3d toSurface(const Direction& normal) {
@@ -98,9 +99,13 @@ Sightings sightingsOf(const LedTable& led) {
         all.push_back(*one);
         brightest = std::max(brightest, one->f);
     }
-    const auto floor = std::stable_partition(all.begin(), all.end(), [&](const Sighting& one) {
-        return one.f >= kLobeShare * brightest;
-    });
+    for (Sighting& one : all) {
+        const double modelError = kModelError * brightest;
+        one.sigma = std::max(std::hypot(one.u, modelError), std::numeric_limits<double>::min());
+        one.inLobe = one.f >= kLobeShare * brightest;
+    }
+    const auto floor = std::stable_partition(
+        all.begin(), all.end(), [](const Sighting& one) { return one.inLobe; });
     Sightings others(floor, all.end());
     all.erase(floor, all.end());
     thin(all, kMostLobeCells);
@@ -119,9 +124,9 @@ TiltLobe strengths(std::span<const Sighting> sightings,
     Eigen::Vector2d right = Eigen::Vector2d::Zero();
     for (const Sighting& one : sightings) {
         const Parts parts = partsOf(shape, turn, {one.wi, one.wo});
-        const Eigen::Vector2d row = Eigen::Vector2d(parts.floor, parts.lobe) / one.sigma();
+        const Eigen::Vector2d row = Eigen::Vector2d(parts.floor, parts.lobe) / one.sigma;
         normal += row * row.transpose();
-        right += row * (one.f / one.sigma());
+        right += row * (one.f / one.sigma);
     }
     const Eigen::Vector2d found = normal.completeOrthogonalDecomposition().solve(right);
     return {.diffuse = std::max(0.0, found[0]),
@@ -144,7 +149,7 @@ void residualsOf(std::span<const Sighting> sightings,
     const TiltLobe lobe = strengths(sightings, shape, turn);
     for (std::size_t i = 0; i < sightings.size(); ++i) {
         const Sighting& one = sightings[i];
-        out[i] = (one.f - shownBy(lobe, turn, {one.wi, one.wo})) / one.sigma();
+        out[i] = (one.f - shownBy(lobe, turn, {one.wi, one.wo})) / one.sigma;
     }
 }
 
@@ -181,7 +186,7 @@ double matt(const std::vector<Sightings>& leds) {
     for (const Sightings& led : leds) {
         double ff = 0, f1 = 0, one1 = 0;
         for (const Sighting& one : led) {
-            const double weight = 1 / (one.sigma() * one.sigma());
+            const double weight = 1 / (one.sigma * one.sigma);
             ff += weight * one.f * one.f;
             f1 += weight * one.f;
             one1 += weight;
@@ -191,19 +196,25 @@ double matt(const std::vector<Sightings>& leds) {
     return sum;
 }
 
+/// A lobe of a usual width, of which nothing was found out.
+FitReport noFit() {
+    return {.params = {0, 0, std::log(0.2), std::log(0.1)},
+            .covariance = Eigen::MatrixXd::Constant(4, 4, std::nan(""))};
+}
+
 /// From several widths, as a start too narrow or too wide does not see the lobe. Empty: there is
-/// none.
+/// none; not ok: there is one, and no fit finds it.
 std::optional<FitReport> bestJoint(const std::vector<Sightings>& leds) {
     std::optional<FitReport> best;
     for (double alpha : {0.05, 0.2, 0.5}) {
         FitReport report = fitJoint(leds, alpha);
         if (report.ok() && (!best || report.rms < best->rms)) best = std::move(report);
     }
-    if (!best) return best;
-    const double left = best->rms * best->rms * static_cast<double>(countOf(leds));
+    const double count = static_cast<double>(countOf(leds));
+    const double left = best ? best->rms * best->rms * count : count;
     const double without = matt(leds);
     if (without - left < kLobeChiSquare || without < kLobeGain * left) return std::nullopt;
-    return best;
+    return best ? best : noFit();
 }
 
 /// Root mean square of the relative misfit, beyond the noise, over the lobes of one LED.
@@ -212,26 +223,41 @@ double misfitOf(std::span<const Sighting> sightings,
                 const Direction& normal) {
     const Eigen::Matrix3d turn = toSurface(normal);
     double squares = 0;
+    int count = 0;
     for (const Sighting& one : sightings) {
+        if (!one.inLobe || !(one.f > 0)) continue;
         const double off = one.f - shownBy(lobe, turn, {one.wi, one.wo});
-        if (one.f > 0) squares += (off * off - one.u * one.u) / (one.f * one.f);
+        squares += (off * off - one.u * one.u) / (one.f * one.f);
+        ++count;
     }
-    return std::sqrt(std::max(0.0, squares) /
-                     static_cast<double>(std::max<std::size_t>(1, sightings.size())));
+    return std::sqrt(std::max(0.0, squares) / std::max(1, count));
 }
 
-/// Of either axis: the fit's own, what a misfit may do, and the lens map's.
-Radians uncertaintyOf(const FitReport& report, double misfit, double alpha, Radians uAngle) {
-    const double own = std::max(1.0, report.rms) *
-                       std::sqrt(std::max(report.covariance(0, 0), report.covariance(1, 1)));
-    return Radians(std::hypot(own, misfit * alpha / 4, uAngle.value()));
+/// Of either axis, by the scatter of the cells about the fit.
+Radians uFitOf(const FitReport& report) {
+    return Radians(std::max(1.0, report.rms) *
+                   std::sqrt(std::max(report.covariance(0, 0), report.covariance(1, 1))));
 }
 
-/// One LED's own normal, the lobe's width held.
-std::optional<Normal> normalSeenBy(std::span<const Sighting> sightings,
-                                   const Shape& shape,
-                                   const Normal& joint,
-                                   Radians uAngle) {
+/// What a misfit may do to it.
+Radians uMisfitOf(double misfit, double alpha) { return Radians(misfit * alpha / 4); }
+
+Radians together(Radians a, Radians b, Radians c) {
+    return Radians(std::hypot(a.value(), b.value(), c.value()));
+}
+
+/// One LED's own normal, and of its uncertainty what is the LED's alone: the lens map moves those
+/// of all LEDs alike.
+struct OwnNormal {
+    Normal normal;
+    Radians uFit, uMisfit;
+};
+
+/// The lobe's width is held.
+std::optional<OwnNormal> normalSeenBy(std::span<const Sighting> sightings,
+                                      const Shape& shape,
+                                      const Normal& joint,
+                                      Radians uAngle) {
     const auto residuals = [&](std::span<const double> p, std::span<double> out) {
         residualsOf(sightings, shape, normalOf(p[0], p[1]), out);
         return true;
@@ -246,9 +272,11 @@ std::optional<Normal> normalSeenBy(std::span<const Sighting> sightings,
     if (!report.ok()) return std::nullopt;
     const Direction own = normalOf(report.params[0], report.params[1]);
     const double misfit = misfitOf(sightings, strengths(sightings, shape, toSurface(own)), own);
-    const Radians u = uncertaintyOf(report, misfit, shape.alpha, uAngle);
-    if (u.value() > kWorstUncertainty) return std::nullopt;
-    return Normal{own, u};
+    const Radians uFit = uFitOf(report);
+    const Radians uMisfit = uMisfitOf(misfit, shape.alpha);
+    const Radians u = together(uFit, uMisfit, uAngle);
+    if (u.value() > kSeated) return std::nullopt;
+    return OwnNormal{.normal = {own, u}, .uFit = uFit, .uMisfit = uMisfit};
 }
 
 /// A lobe that stands out of its floor: less is the floor's own departure from Lambert's.
@@ -265,16 +293,25 @@ bool standsOut(const SampleSet& sample, const TiltEstimate& estimate) {
     return 2 * count >= sample.leds.size();
 }
 
-Radians wavinessOf(const TiltEstimate& estimate) {
+Radians wavinessOf(std::span<const std::optional<OwnNormal>> leds, const Direction& joint) {
     double squares = 0;
     int count = 0;
-    for (const auto& led : estimate.leds) {
+    for (const auto& led : leds) {
         if (!led) continue;
-        const double apart = angleBetween({led->direction, estimate.joint.direction}).value();
-        squares += apart * apart - 2 * led->u.value() * led->u.value();
+        const double apart = angleBetween({led->normal.direction, joint}).value();
+        const double uFit = led->uFit.value(), uMisfit = led->uMisfit.value();
+        squares += apart * apart - 2 * uFit * uFit - uMisfit * uMisfit;
         ++count;
     }
     return Radians(count < 2 ? 0 : std::sqrt(std::max(0.0, squares / count)));
+}
+
+/// There is a lobe, and how it lies is not to be seen.
+TiltEstimate undetermined(TiltEstimate estimate) {
+    estimate.determined = false;
+    estimate.joint = {Direction(), Radians(kSeated)};
+    estimate.leds.assign(estimate.lobes.size(), std::nullopt);
+    return estimate;
 }
 
 }  // namespace
@@ -300,12 +337,14 @@ std::optional<TiltEstimate> estimateTilt(const SampleSet& sample, Radians uAngle
         estimate.misfit = std::max(estimate.misfit, misfit);
     }
     if (!standsOut(sample, estimate)) return std::nullopt;
-    estimate.joint.u = uncertaintyOf(*report, estimate.misfit, shape.alpha, uAngle);
-    if (estimate.joint.u.value() > kWorstUncertainty) return std::nullopt;
+    estimate.joint.u = together(uFitOf(*report), uMisfitOf(estimate.misfit, shape.alpha), uAngle);
+    if (!(estimate.joint.u.value() <= kSeated)) return undetermined(std::move(estimate));
+    std::vector<std::optional<OwnNormal>> own;
     for (const Sightings& led : leds) {
-        estimate.leds.push_back(normalSeenBy(led, shape, estimate.joint, uAngle));
+        own.push_back(normalSeenBy(led, shape, estimate.joint, uAngle));
+        estimate.leds.push_back(own.back() ? std::optional(own.back()->normal) : std::nullopt);
     }
-    estimate.waviness = wavinessOf(estimate);
+    estimate.waviness = wavinessOf(own, normal);
     return estimate;
 }
 

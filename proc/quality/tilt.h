@@ -9,9 +9,11 @@
 // as the lit spot lies within the aperture's view. n is fitted jointly to all LEDs, with f a
 // Lambert floor and one GGX lobe [Walter2007] common to them; where a real lobe is none, the misfit
 // widens the uncertainty. Each LED's own normal is then fitted with that lobe held: on a wavy
-// surface they disagree by more than they can be wrong.
+// surface they disagree by more than noise explains.
 //
-// A matt sample shows no lobe: its normal is not determined, and its tilt does no harm. A lobe
+// A matt sample shows no lobe, and its tilt does no harm: no answer. Where there is a lobe and its
+// fit leaves the normal open by more than samples are seated to (0.02 rad), that is the answer:
+// along z, within 0.02 rad, not determined. A lobe
 // narrower than the cells (alpha < 0.02, 1 degree) is located to a fraction of a cell only.
 
 #include <optional>
@@ -42,14 +44,15 @@ struct TiltEstimate {
     Normal joint;
     std::vector<std::optional<Normal>> leds;  ///< as the set's; empty: not determined
     std::vector<TiltLobe> lobes;              ///< by LED
+    bool determined = true;                   ///< else there is a lobe, and `joint` is the seat's
     double misfit = 0;  ///< rms of (measured - fitted) / measured over the lobes, beyond the noise
-    /// Root mean square angle between the LEDs' normals and the joint one, beyond their
-    /// uncertainties; 0 where these explain it.
+    /// Root mean square angle between the LEDs' normals and the joint one, beyond the scatter and
+    /// the misfit of their fits; 0 where these explain it.
     Radians waviness;
 };
 
-/// `uAngle`: standard uncertainty of the lens map's directions, per axis. Empty where no normal is
-/// determined: no lobe, no cell measured, or a fit that fails.
+/// `uAngle`: standard uncertainty of the lens map's directions, per axis. Empty without
+/// a lobe or a cell measured.
 [[nodiscard]] std::optional<TiltEstimate> estimateTilt(const SampleSet& sample, Radians uAngle);
 
 /// f at a direction pair as a surface on a tilt shows it, by the fitted lobe.

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "proc/core/parallel.h"
@@ -44,6 +45,13 @@ void forget(CellSamples& cells, std::size_t cell) {
     cells.flags[cell].clear(Flag::Measured);
 }
 
+/// Of the normal that one LED sees, about either axis: the joint one's, and the waves. Their root
+/// mean square angle is that about both axes together.
+Radians uOfOneLed(const TiltEstimate& estimate) {
+    return Radians(
+        std::hypot(estimate.joint.u.value(), estimate.waviness.value() / std::numbers::sqrt2));
+}
+
 /// Adds |d f / d tilt| u, about both axes together.
 void widen(CellSamples& cells, const Place& place, Radians u) {
     const double here = tiltedLobe(place.lobe, Direction(), place.pair);
@@ -84,6 +92,7 @@ SampleSet tiltCorrected(const SampleSet& sample, const TiltEstimate& estimate) {
     const Eigen::Matrix3d turn = Eigen::Quaterniond::FromTwoVectors(
                                      Eigen::Vector3d::UnitZ(), estimate.joint.direction.vector())
                                      .toRotationMatrix();
+    const Radians u = uOfOneLed(estimate);
     SampleSet corrected = sample;
     forEachCell(corrected, estimate, [&](CellSamples& cells, const Place& place) {
         const auto at = seenAt(place.pair, turn);
@@ -95,13 +104,13 @@ SampleSet tiltCorrected(const SampleSet& sample, const TiltEstimate& estimate) {
         cells.uRandom[place.cell] = (*answer.uRandom)[place.band] * flat;
         cells.uSystematic[place.cell] = (*answer.uSystematic)[place.band] * flat;
         cells.flags[place.cell].set(Flag::TiltCorrected);
-        widen(cells, place, estimate.joint.u);
+        widen(cells, place, u);
     });
     return corrected;
 }
 
 SampleSet withTiltUncertainty(SampleSet sample, const TiltEstimate& estimate) {
-    const Radians u(std::hypot(estimate.joint.tilt().value(), estimate.joint.u.value()));
+    const Radians u(std::hypot(estimate.joint.tilt().value(), uOfOneLed(estimate).value()));
     forEachCell(
         sample, estimate, [&](CellSamples& cells, const Place& place) { widen(cells, place, u); });
     return sample;

@@ -8,7 +8,8 @@
 // distribution of facets is the same on both sides and cancels, whatever its real shape.
 //
 // Where a cell that is needed is missing, or wo* is beyond the field, the answer is missing. The
-// tilt's uncertainty times the slope of the lobe goes into u_systematic, corrected or not.
+// tilt's uncertainty and the waves, times the slope of the lobe, go into u_systematic, corrected or
+// not: each LED sees a normal of its own.
 
 #include "proc/quality/tilt.h"
 

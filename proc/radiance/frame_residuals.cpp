@@ -9,6 +9,7 @@ namespace gonio::proc {
 namespace {
 
 constexpr double kLeastSignificance = 5;
+constexpr double kScaleErrors = 1.96;  // standard uncertainties of the scales: 95 %
 
 /// What all frames saw at one pixel: rates in electrons per second at full level.
 struct PixelSamples {
@@ -39,50 +40,66 @@ public:
         return samples;
     }
 
-    /// 1 / variance of each sample where the light is `light`; 0 of those that are not usable.
+    /// 1 / variance of what is each sample's own where the light is `light`; 0 of those that are
+    /// not usable.
     [[nodiscard]] std::vector<double> weights(const PixelSamples& samples, double light) const {
         std::vector<double> weights(samples.rate.size());
         for (std::size_t i = 0; i < weights.size(); ++i) {
             if (!samples.usable[i]) continue;
             const GroupFigures& f = figures_[sums_.witnesses[i].group];
-            weights[i] = f.tau * f.tau /
-                         (light * f.tau / sums_.members() + f.floorVariance + f.darkVariance);
+            weights[i] = f.tau * f.tau / (light * f.tau / sums_.members() + f.floorVariance);
         }
         return weights;
     }
 
+    /// What the frames of one exposure share: their dark frame's noise.
+    [[nodiscard]] std::vector<SharedNoise> shared() const {
+        std::vector<SharedNoise> shared;
+        for (const Witness& witness : sums_.witnesses) {
+            const GroupFigures& f = figures_[witness.group];
+            shared.push_back({.source = firstWithDarkOf(witness.group),
+                              .sigma = std::sqrt(f.darkVariance) / f.tau});
+        }
+        return shared;
+    }
+
+    /// 1 for the frames of a group, 0 for the others.
+    [[nodiscard]] Eigen::VectorXd framesOf(std::size_t group) const {
+        Eigen::VectorXd ones =
+            Eigen::VectorXd::Zero(static_cast<Eigen::Index>(sums_.witnesses.size()));
+        for (std::size_t i = 0; i < sums_.witnesses.size(); ++i)
+            ones(static_cast<Eigen::Index>(i)) = sums_.witnesses[i].group == group ? 1 : 0;
+        return ones;
+    }
+
 private:
+    [[nodiscard]] std::size_t firstWithDarkOf(std::size_t group) const {
+        std::size_t first = 0;
+        while (sums_.groups[first].dark != sums_.groups[group].dark) ++first;
+        return first;
+    }
+
     const BracketSums& sums_;
     std::vector<GroupFigures> figures_;
 };
 
-struct Mean {
-    double weight = 0, rate = 0;
-    int count = 0;
-};
-
-Mean meanOf(const PixelSamples& samples, const std::vector<double>& weights) {
-    Mean mean;
-    for (std::size_t i = 0; i < weights.size(); ++i) {
-        mean.weight += weights[i];
-        mean.rate += weights[i] * samples.rate[i];
-        mean.count += weights[i] > 0 ? 1 : 0;
-    }
-    if (mean.count > 0) mean.rate /= mean.weight;
-    return mean;
-}
-
 /// Adds each sample's squared distance from the mean, over its variance: that of the sample less
 /// that of the mean.
 void addDistances(const PixelSamples& samples,
-                  const std::vector<double>& weights,
+                  const SharedWeights& weights,
                   std::vector<FrameResidual>& frames) {
-    const Mean mean = meanOf(samples, weights);
-    if (mean.count < 2) return;
+    double sum = 0, sumRate = 0;
+    int count = 0;
     for (std::size_t i = 0; i < weights.size(); ++i) {
-        if (weights[i] == 0) continue;
-        const double distance = samples.rate[i] - mean.rate;
-        frames[i].chiSquare += distance * distance / (1 / weights[i] - 1 / mean.weight);
+        sum += weights.inMean(i);
+        sumRate += weights.inMean(i) * samples.rate[i];
+        count += weights.present(i) ? 1 : 0;
+    }
+    if (count < 2) return;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        if (!weights.present(i)) continue;
+        const double distance = samples.rate[i] - sumRate / sum;
+        frames[i].chiSquare += distance * distance / (weights.variance(i) - 1 / sum);
         ++frames[i].freedom;
     }
 }
@@ -94,33 +111,62 @@ Eigen::VectorXd pattern(std::size_t frames, std::size_t first, std::size_t last)
     return ones;
 }
 
+/// What makes the frames of whole groups brighter than they say, without any change of the light.
+class ScaleErrors {
+public:
+    ScaleErrors(const BracketSums& sums,
+                const Witnesses& witnesses,
+                const NominalUncertainty& nominal) {
+        for (std::size_t g = 0; g < sums.groups.size(); ++g)
+            errors_.push_back(nominal.of(sums.groups[g]) * witnesses.framesOf(g));
+    }
+    /// The standard deviation of what they show along a pattern.
+    [[nodiscard]] double along(const ScaleSystem& system, const Eigen::VectorXd& pattern) const {
+        double squares = 0;
+        for (const Eigen::VectorXd& error : errors_)
+            squares += std::pow(system.seenAlong(pattern, error), 2);
+        return std::sqrt(squares);
+    }
+
+private:
+    std::vector<Eigen::VectorXd> errors_;  // of each group: its u, in its frames
+};
+
 /// The most significant step or single frame that is worth a report.
 std::optional<LightChange> changeIn(const ScaleSystem& system,
+                                    const ScaleErrors& scales,
                                     std::size_t frames,
                                     double smallest) {
     std::optional<LightChange> best;
     const auto consider = [&](std::size_t first, std::size_t last) {
-        const auto offset = system.along(pattern(frames, first, last));
-        if (!offset) return;
+        const Eigen::VectorXd ones = pattern(frames, first, last);
+        const auto offset = system.along(ones);
+        if (!offset || std::abs(offset->size) < smallest) return;
         const double significance = std::abs(offset->significance());
         const double toBeat = best ? std::abs(best->offset.significance()) : kLeastSignificance;
-        if (significance > toBeat) best = {.first = first, .last = last, .offset = *offset};
+        if (significance <= toBeat) return;
+        const double uScale = scales.along(system, ones);
+        if (std::abs(offset->size) < kScaleErrors * uScale) return;
+        best = {.first = first, .last = last, .offset = *offset, .uScale = uScale};
     };
     for (std::size_t first = 1; first < frames; ++first) consider(first, frames - 1);
     // The first and the last one alone are steps as well.
     for (std::size_t frame = 1; frame + 1 < frames; ++frame) consider(frame, frame);
-    if (best && std::abs(best->offset.size) < smallest) return std::nullopt;
     return best;
 }
 
 }  // namespace
 
-FrameReport frameResiduals(const BracketSums& sums, const MergedState& state, double smallest) {
+FrameReport frameResiduals(const BracketSums& sums,
+                           const MergedState& state,
+                           double smallest,
+                           const NominalUncertainty& nominal) {
     const std::size_t count = sums.witnesses.size();
     FrameReport report;
     for (const Witness& witness : sums.witnesses)
         report.frames.push_back({witness.number, {}, 0, 0});
     const Witnesses witnesses(sums);
+    const std::vector<SharedNoise> shared = witnesses.shared();
     ScaleSystem system(count);
     for (int j = 0; j < sums.grid.size.height; ++j) {
         for (int i = 0; i < sums.grid.size.width; ++i) {
@@ -128,16 +174,19 @@ FrameReport frameResiduals(const BracketSums& sums, const MergedState& state, do
             const auto at = static_cast<std::size_t>(j * sums.grid.size.width + i);
             const PixelSamples samples = witnesses.samples(at, x, y);
             const auto own = static_cast<double>(state.radiance.at(x, y));
-            if (std::isfinite(own))
-                addDistances(
-                    samples, witnesses.weights(samples, std::max(own, 0.0)), report.frames);
-            if (const auto light = lightAround(state.radiance, x, y))
-                system.add(*light, samples.rate, witnesses.weights(samples, *light));
+            if (std::isfinite(own)) {
+                const auto weights = witnesses.weights(samples, std::max(own, 0.0));
+                addDistances(samples, {weights, shared}, report.frames);
+            }
+            if (const auto light = lightAround(state.radiance, x, y)) {
+                const auto weights = witnesses.weights(samples, *light);
+                system.add(*light, samples.rate, SharedWeights(weights, shared));
+            }
         }
     }
     for (std::size_t frame = 0; frame < count; ++frame)
         report.frames[frame].offset = system.along(pattern(count, frame, frame));
-    report.change = changeIn(system, count, smallest);
+    report.change = changeIn(system, {sums, witnesses, nominal}, count, smallest);
     return report;
 }
 

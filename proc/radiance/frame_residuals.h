@@ -5,10 +5,13 @@
 //
 // Per frame: its brightness against what the others say of the same pixels (scale_system.h), and
 // chi^2 = the mean over pixels of its squared distance from the mean of all frames there, in units
-// of the variance of that distance: 1 where noise alone differs. Changed light is looked for as a
-// step (all frames from one on are brighter) and as a single frame; the most significant one is
-// reported where it is at least 5 standard uncertainties and as large as wanted. One in 2e6 is a
-// false alarm by noise alone.
+// of the variance of that distance: 1 where noise alone differs. Frames of one exposure share the
+// noise of their dark frame (shared_noise.h). Changed light is looked for as a step (all frames
+// from one on are brighter) and as a single frame; the most significant one is reported that is at
+// least 5 standard uncertainties, as large as wanted, and beyond what wrong scales of whole
+// groups of frames make of it at 95 % (group_scales.h): a step between two groups of one frame each
+// looks no different from that. By noise alone one in 2e6 of these is a false alarm, and of n
+// frames 2 n - 3 are tried.
 //
 // With one frame, or without a pixel that two frames see, nothing can be said, and nothing is.
 
@@ -17,6 +20,7 @@
 #include <optional>
 #include <vector>
 
+#include "proc/radiance/group_scales.h"
 #include "proc/radiance/merge.h"
 #include "proc/radiance/merge_accumulator.h"
 #include "proc/radiance/scale_system.h"
@@ -34,6 +38,7 @@ struct FrameResidual {
 struct LightChange {
     std::size_t first = 0, last = 0;
     BrightnessOffset offset;
+    double uScale = 0;  ///< of the offset, by the nominal scales of the groups
 };
 
 struct FrameReport {
@@ -44,6 +49,7 @@ struct FrameReport {
 /// `state` is the merge of the sums; changes smaller than `smallest` (relative) are not reported.
 [[nodiscard]] FrameReport frameResiduals(const BracketSums& sums,
                                          const MergedState& state,
-                                         double smallest = 0.01);
+                                         double smallest = 0.01,
+                                         const NominalUncertainty& nominal = {});
 
 }  // namespace gonio::proc

@@ -104,12 +104,12 @@ Systems compared(const BracketSums& sums, const Comparison& comparison) {
     return all;
 }
 
-double uOf(const GroupSums& group, const NominalUncertainty& nominal) {
-    const double dimmed = group.level < 65535 ? nominal.dimmed : 0;
-    return std::hypot(nominal.exposure.count() / group.seconds, nominal.relative, dimmed);
-}
-
 }  // namespace
+
+double NominalUncertainty::of(const GroupSums& group) const {
+    const double ofLevel = group.level < 65535 ? dimmed : 0;
+    return std::hypot(exposure.count() / group.seconds, relative, ofLevel);
+}
 
 ScaleReport groupScales(const BracketSums& sums,
                         const MergedState& state,
@@ -118,7 +118,7 @@ ScaleReport groupScales(const BracketSums& sums,
     const Systems systems = compared(sums, comparison);
     ScaleReport report;
     std::vector<double> uNominal;
-    for (const GroupSums& group : sums.groups) uNominal.push_back(uOf(group, nominal));
+    for (const GroupSums& group : sums.groups) uNominal.push_back(nominal.of(group));
     const std::vector<BrightnessOffset> offsets = systems.all.solve(uNominal);
     for (std::size_t g = 0; g < offsets.size(); ++g) {
         report.groups.push_back({.granted = sums.groups[g].granted,

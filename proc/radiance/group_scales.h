@@ -23,6 +23,9 @@ struct NominalUncertainty {
     Seconds exposure{0.5e-6};  ///< of each exposure
     double relative = 1e-4;    ///< of any tau
     double dimmed = 0.02;      ///< of a level below full
+
+    /// Of a group's tau, relative.
+    [[nodiscard]] double of(const GroupSums& group) const;
 };
 
 struct GroupScale {

@@ -5,11 +5,16 @@
 #include <cmath>
 #include <string>
 
+#include "proc/core/number_text.h"
 #include "proc/radiance/exposure_groups.h"
 #include "proc/radiance/saturation.h"
 
 namespace gonio::proc {
 namespace {
+
+// Of a sweep's pixels, relative: what bends the mean of readings is the bend of their mean then, to
+// a hundredth.
+constexpr double kUneven = 0.05;
 
 Error refused(const std::string& what) {
     return {.kind = ErrorKind::Quality, .message = "linearity: " + what};
@@ -78,6 +83,69 @@ std::string misfit(std::span<const SweepPoint> sweep, int degree) {
     return {};
 }
 
+/// The pixels that all frames of a sweep can use: were more of the dim ones in the mean of a bright
+/// exposure, that would be taken for a bend.
+class CommonPixels {
+public:
+    CommonPixels(std::span<const Frame> sweep, const SensorNoise& noise)
+        : usable_(sweep.front().pixels.size(), 1) {
+        std::vector<std::uint8_t> marks(static_cast<std::size_t>(usable_.width()));
+        for (const Frame& frame : sweep) {
+            for (int y = 0; y < usable_.height(); ++y) {
+                markUsable(frame.pixels, y, noise, marks);
+                for (std::size_t x = 0; x < marks.size(); ++x) usable_.row(y)[x] &= marks[x];
+            }
+        }
+        for (const std::uint8_t one : usable_.pixels()) count_ += one;
+    }
+
+    [[nodiscard]] bool fewerThan99PerCent() const {
+        return count_ < 0.99 * static_cast<double>(usable_.pixels().size()) || count_ == 0;
+    }
+
+    [[nodiscard]] SweepPoint point(const ExposureGroup& group, const SensorNoise& noise) const {
+        double sum = 0;
+        forEach(group, [&](double mean) { sum += mean; });
+        SweepPoint point{.tau = group.tau, .meanDn = sum / count_, .u = 0};
+        point.u = std::sqrt(noiseOf(group, point.meanDn, noise) / count_);
+        return point;
+    }
+
+    /// Standard deviation between the pixels over their mean, beyond the noise.
+    [[nodiscard]] double unevenness(const ExposureGroup& group, const SensorNoise& noise) const {
+        const double mean = point(group, noise).meanDn;
+        double squares = 0;
+        forEach(group, [&](double own) { squares += (own - mean) * (own - mean); });
+        const double variance = squares / count_ - noiseOf(group, mean, noise);
+        return std::sqrt(std::max(0.0, variance)) / std::abs(mean);
+    }
+
+private:
+    /// DN^2, of the mean of a pixel over the frames of a group, less the dark.
+    static double noiseOf(const ExposureGroup& group, double meanDn, const SensorNoise& noise) {
+        const double k = noise.electronsPerDn;
+        const double single = noise.variance(meanDn * k, group.seconds) / (k * k);
+        return single / static_cast<double>(group.frames.size()) + group.dark->varianceOfMean;
+    }
+
+    /// Calls with the mean of each pixel over the frames of a group, less the dark.
+    template <class Call>
+    void forEach(const ExposureGroup& group, const Call& call) const {
+        const auto frames = static_cast<double>(group.frames.size());
+        for (int y = 0; y < usable_.height(); ++y) {
+            for (int x = 0; x < usable_.width(); ++x) {
+                if (usable_.at(x, y) == 0) continue;
+                double sum = 0;
+                for (const Frame* frame : group.frames) sum += frame->pixels.at(x, y);
+                call(sum / frames - static_cast<double>(group.dark->mean.at(x, y)));
+            }
+        }
+    }
+
+    Image<std::uint8_t> usable_;
+    double count_ = 0;
+};
+
 }  // namespace
 
 double Linearity::correction(double dn) const {
@@ -89,40 +157,28 @@ double Linearity::correction(double dn) const {
     return rangeDn * sum;
 }
 
-Result<SweepPoint> sweepPoint(std::span<const Frame> frames,
-                              Band band,
-                              const DarkLibrary& darks,
-                              const SensorNoise& noise) {
-    const Result<std::vector<ExposureGroup>> groups = exposureGroups(frames, band, darks);
+Result<std::vector<SweepPoint>> sweepPoints(std::span<const Frame> sweep,
+                                            Band band,
+                                            const DarkLibrary& darks,
+                                            const SensorNoise& noise) {
+    const Result<std::vector<ExposureGroup>> groups = exposureGroups(sweep, band, darks);
     if (!groups) return groups.error().in("linearity");
-    if (groups->size() != 1) return refused("frames of different exposures in one point");
-    const ExposureGroup& group = groups->front();
-    double sum = 0;
-    std::size_t used = 0, all = 0;
-    const Image<float>& dark = group.dark->mean;
-    std::vector<std::uint8_t> usable(static_cast<std::size_t>(dark.width()));
-    for (const Frame& frame : frames) {
-        for (int y = 0; y < dark.height(); ++y) {
-            markUsable(frame.pixels, y, noise, usable);
-            const auto row = frame.pixels.row(y);
-            for (std::size_t x = 0; x < usable.size(); ++x) {
-                used += usable[x];
-                sum += usable[x] * (row[x] - static_cast<double>(dark.row(y)[x]));
-            }
-        }
-        all += dark.pixels().size();
+    const CommonPixels common(sweep, noise);
+    if (common.fewerThan99PerCent())
+        return refused("one pixel in a hundred is saturated; leave the longest exposures out");
+    const auto brightest =
+        std::max_element(groups->begin(), groups->end(), [](const auto& one, const auto& other) {
+            return one.tau < other.tau;
+        });
+    const double uneven = common.unevenness(*brightest, noise);
+    if (uneven > kUneven) {
+        return refused("the pixels of a sweep differ by " + fixed(100 * uneven, 1) +
+                       " % rms, at most " + fixed(100 * kUneven, 0) +
+                       " % is good; choose a window that is lit evenly");
     }
-    if (100 * (all - used) >= all) {
-        return refused("one pixel in a hundred is saturated at " +
-                       std::to_string(group.dark->exposure.granted.count()) + " ns");
-    }
-    const auto n = static_cast<double>(used);
-    const double k = noise.electronsPerDn;
-    SweepPoint point{.tau = group.tau, .meanDn = sum / n, .u = 0};
-    const double single = noise.variance(point.meanDn * k, group.seconds) / (k * k);
-    const auto pixels = static_cast<double>(dark.pixels().size());
-    point.u = std::sqrt(single / n + group.dark->varianceOfMean / pixels);
-    return point;
+    std::vector<SweepPoint> points;
+    for (const ExposureGroup& group : *groups) points.push_back(common.point(group, noise));
+    return points;
 }
 
 Result<LinearityFit> fitLinearity(std::span<const SweepPoint> sweep, double blackDn, int degree) {

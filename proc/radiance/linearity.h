@@ -3,8 +3,9 @@
 // the black level in DN, m = M / range; what the light makes is
 //     L = M + range (a_1 m + a_2 m^2 + ... + a_d m^d),   0 <= m <= 1.
 // a_1 is such that over the range the best line through zero of L against M has slope 1: the gain
-// of the sensor stays what it was on average. At M = 0 and below: L = M. Above the range: the
-// correction is that at its end. Without coefficients: the identity.
+// of the sensor stays what it was on average. At M = 0: L = M; below: L = (1 + a_1) M, as
+// just above it. Above the range: the correction is that at its end. Without coefficients: the
+// identity.
 //
 // Fitted to a sweep of exposures at constant light, M_j seen at the effective time tau_j:
 //     M_j = r tau_j + o - sum_k range a_k m_j^k     (k = 2 .. d)
@@ -52,12 +53,14 @@ struct LinearityFit {
     std::size_t freedom = 0;
 };
 
-/// The mean over all pixels of frames that were taken alike, less the dark. Quality error when
-/// there are none, they differ, or one pixel in a hundred is saturated.
-[[nodiscard]] Result<SweepPoint> sweepPoint(std::span<const Frame> frames,
-                                            Band band,
-                                            const DarkLibrary& darks,
-                                            const SensorNoise& noise);
+/// Of each exposure of a sweep, by exposure: the mean less the dark over the pixels that all frames
+/// of the sweep can use. Quality error without frames, where one pixel in a hundred is saturated,
+/// or where the pixels differ by more than 5 % rms: the mean of what is bent is not the bend of the
+/// mean, and the brightest pixels would lie beyond the range.
+[[nodiscard]] Result<std::vector<SweepPoint>> sweepPoints(std::span<const Frame> sweep,
+                                                          Band band,
+                                                          const DarkLibrary& darks,
+                                                          const SensorNoise& noise);
 
 /// `degree` is d, 2 to 6. Quality error with fewer than d + 2 points, points that are not numbers
 /// or without uncertainty, or effective times that cannot tell the terms apart.

@@ -127,13 +127,22 @@ PhotonTransfer transferOf(const Line& line) {
     return found;
 }
 
-/// Dark pairs are alike to a photon, and count as one light.
+/// Means less than this apart are of one light: dark pairs, and pairs taken alike.
+constexpr double kOneLight = 1;  // DN
+
+/// A line has two ends, and something between them that can be off it.
 bool tellsALine(const std::vector<Point>& points) {
-    const auto [least, most] =
-        std::minmax_element(points.begin(), points.end(), [](const Point& a, const Point& b) {
-            return a.mean < b.mean;
-        });
-    return points.size() >= 3 && most->mean > least->mean + 1;
+    std::vector<double> means;
+    for (const Point& point : points) means.push_back(point.mean);
+    std::sort(means.begin(), means.end());
+    int lights = 0;
+    double last = 0;
+    for (const double mean : means) {
+        if (lights > 0 && mean <= last + kOneLight) continue;
+        ++lights;
+        last = mean;
+    }
+    return lights >= 3;
 }
 
 }  // namespace

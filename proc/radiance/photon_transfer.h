@@ -36,7 +36,8 @@ struct PhotonTransfer {
 };
 
 /// `noise` gives full scale only. Quality error when the frames of a pair are not alike, fewer than
-/// three pairs of different light are usable, or the variance does not rise with the mean.
+/// three pairs of different light (means 1 DN apart) are usable, or the variance does not rise with
+/// the mean.
 [[nodiscard]] Result<PhotonTransfer> photonTransfer(std::span<const FlatPair> pairs,
                                                     const SensorNoise& noise);
 

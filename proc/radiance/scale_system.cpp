@@ -37,6 +37,30 @@ void ScaleSystem::add(double light, std::span<const double> rate, std::span<cons
     }
 }
 
+void ScaleSystem::add(double light, std::span<const double> rate, const SharedWeights& weights) {
+    double sum = 0, sumRate = 0;
+    int seen = 0;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        sum += weights.inMean(i);
+        sumRate += weights.inMean(i) * rate[i];
+        seen += weights.present(i) ? 1 : 0;
+    }
+    if (seen < 2 || light <= 0) return;
+    const double mean = sumRate / sum;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        if (!weights.present(i)) continue;
+        for (std::size_t j = 0; j < weights.size(); ++j) {
+            if (!weights.present(j)) continue;
+            const double w = weights.at(i, j);
+            b_(signedIndex(i)) += light * w * (rate[j] - mean);
+            if (j > i) continue;
+            const double p = w - weights.inMean(i) * weights.inMean(j) / sum;
+            h_(signedIndex(i), signedIndex(j)) += light * mean * p;
+            g_(signedIndex(i), signedIndex(j)) += light * light * p;
+        }
+    }
+}
+
 ScaleSystem& ScaleSystem::operator+=(const ScaleSystem& other) {
     h_ += other.h_;
     g_ += other.g_;
@@ -49,6 +73,11 @@ std::optional<BrightnessOffset> ScaleSystem::along(const Eigen::VectorXd& patter
     const double variance = pattern.dot(g_.selfadjointView<Eigen::Lower>() * pattern);
     if (!(information > 0) || !(variance > 0)) return std::nullopt;
     return BrightnessOffset{pattern.dot(b_) / information, std::sqrt(variance) / information};
+}
+
+double ScaleSystem::seenAlong(const Eigen::VectorXd& pattern, const Eigen::VectorXd& off) const {
+    const Eigen::VectorXd row = h_.selfadjointView<Eigen::Lower>() * pattern;
+    return row.dot(off) / row.dot(pattern);
 }
 
 std::vector<BrightnessOffset> ScaleSystem::solve(std::span<const double> uNominal) const {

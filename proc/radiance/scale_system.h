@@ -6,7 +6,8 @@
 //     P_ij = w_ip (i = j) - w_ip w_jp / sum_k w_kp,   zbar_p = sum w_ip z_ip / sum w_ip,
 // and the covariance of b is G_ij = sum_p y_p^2 P_ij. y_p is the light of the pixel's surroundings:
 // with its own noise in y, b would not be zero on average where nothing differs, as noise would be
-// multiplied with itself. Terms of d^2 are left out: 5 % is found as 5 % to 0.25 %.
+// multiplied with itself. Terms of d^2 are left out: 5 % is found as 5 % to 0.25 %. Where nodes
+// share noise, W_ij (shared_noise.h) takes the place of w_i (i = j), and its row sums that of w_i.
 //
 // The common factor of all nodes is not in the pictures: H (1, 1, ..) = 0. Either a direction of d
 // is asked for (`along`), or the nominal scales have uncertainties of their own (`solve`).
@@ -18,6 +19,7 @@
 #include <vector>
 
 #include "proc/core/image.h"
+#include "proc/radiance/shared_noise.h"
 
 namespace gonio::proc {
 
@@ -36,11 +38,15 @@ public:
     /// One pixel. `light` is y_p > 0; `rate` and `weight` have one z and w per node, w = 0 where
     /// the node has none. A pixel that less than two nodes see says nothing.
     void add(double light, std::span<const double> rate, std::span<const double> weight);
+    void add(double light, std::span<const double> rate, const SharedWeights& weights);
     ScaleSystem& operator+=(const ScaleSystem& other);
 
     /// The factor s of d = s pattern that fits best; a pattern of 1 and 0 asks by how much the ones
     /// are brighter than the zeros. Empty where no pixel tells.
     [[nodiscard]] std::optional<BrightnessOffset> along(const Eigen::VectorXd& pattern) const;
+    /// What `along(pattern)` finds where the nodes are brighter by `off`.
+    [[nodiscard]] double seenAlong(const Eigen::VectorXd& pattern,
+                                   const Eigen::VectorXd& off) const;
 
     /// All d, where the nominal scale of each node is known to `uNominal` (relative, > 0).
     [[nodiscard]] std::vector<BrightnessOffset> solve(std::span<const double> uNominal) const;

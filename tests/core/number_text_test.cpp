@@ -53,5 +53,11 @@ TEST(NumberText, FixedHoldsTheLargestDouble) {
     EXPECT_EQ(fixed(std::numeric_limits<double>::max(), 2).size(), 312U);
 }
 
+TEST(NumberText, FractionsAreShownInPerCent) {
+    EXPECT_EQ(perCent(0.0125), "1.25 %");
+    EXPECT_EQ(perCent(1), "100.00 %");
+    EXPECT_EQ(perCent(-0.05), "-5.00 %");
+}
+
 }  // namespace
 }  // namespace gonio

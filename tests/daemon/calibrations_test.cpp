@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "proc/formats/graw_exr.h"
+#include "tests/daemon/uniform_capture.h"
 #include "tests/support/temp_folder.h"
 
 namespace gonio::daemon {
@@ -44,11 +45,19 @@ TEST(CalibrationValidity, SaysWhyNotAndWhatToRun) {
     bad = white();
     bad.dateUtc = "2026-02-28T11:59:59Z";
     expect(bad, {"24.0 h old", "good for 24.0 h", "gonio calibrate white"});
+    bad.dateUtc = "2026-03-01T12:05:01Z";
+    expect(bad, {"2026-03-01T12:05:01Z, which is still to come", "2026-03-01T12:00:00Z", "clock"});
     bad.dateUtc = "yesterday";
     expect(bad, {"no date"});
     bad = white();
     bad.celsius = 20.9;
     expect(bad, {"20.9 degC", "26.0 degC", "5.0 K"});
+}
+
+TEST(CalibrationValidity, ClocksMayDifferByMinutes) {
+    CalibrationRecord soon = white();
+    soon.dateUtc = "2026-03-01T12:05:00Z";
+    EXPECT_EQ(whyNotNow(soon), "");
 }
 
 TEST(CalibrationValidity, LensMapLivesLongerThanTiles) {
@@ -119,6 +128,7 @@ TEST_F(CalibrationsInStore, WhatIsNoSetIsRefused) {
                             "1+2+",
                             "+",
                             "1+2+3+7",
+                            "1+2+3+8",  // the fourth is not even looked for
                             "1+2",
                             "3+2+1",
                             "1.5",
@@ -136,33 +146,6 @@ TEST_F(CalibrationsInStore, MissingKindSaysWhatToRun) {
     EXPECT_NE(none.error().message.find("gonio calibrate mirror"), std::string::npos);
 }
 
-/// One state of uniform radiance.
-std::string uniformCapture(int led) {
-    constexpr Size kSize{700, 700};
-    proc::RawCapture capture;
-    for (const Band band : kBands) {
-        proc::RawState state;
-        state.merged = {.radiance = Image<float>(kSize, 100.F),
-                        .variance = Image<float>(kSize, 1.F),
-                        .used = Image<std::uint8_t>(kSize, 1),
-                        .saturated = Image<std::uint8_t>(kSize, 0),
-                        .window = {.x = 0, .y = 0, .size = kSize},
-                        .led = led,
-                        .band = band};
-        capture.states.push_back(std::move(state));
-    }
-    const auto bytes = proc::encodeGraw(std::move(capture));
-    EXPECT_TRUE(bytes) << bytes.error().message;
-    return bytes ? *bytes : std::string();
-}
-
-LensRecord lensWith(double pixelsPerDegree) {
-    return {.fit = {.map = proc::LensMap::fTheta({350, 350}, pixelsPerDegree),
-                    .covariance = Eigen::MatrixXd::Identity(8, 8)},
-            .spots = 20,
-            .dateUtc = "t"};
-}
-
 /// Lens, reference, and a lens map that was taken since.
 TEST(CalibrationReference, IsBinnedAgainWhereAnotherLensMapIsWanted) {
     const test::TempFolder folder;
@@ -172,11 +155,12 @@ TEST(CalibrationReference, IsBinnedAgainWhereAnotherLensMapIsWanted) {
         return *store->addCalibration({.rig = "R", .kind = "mirror", .dateUtc = "t"},
                                       {.file = encodeLens(lens), .raw = {}});
     };
-    const LensRecord first = lensWith(4.0), second = lensWith(4.4);
+    const LensRecord first = test::evenLens(4.0), second = test::evenLens(4.4);
     const CalibrationRecord firstMirror = keepLens(first);
     auto reference = [&]() -> Result<CalibrationRecord> {
         test::TempFolder raw;
-        if (auto wrote = proc::writeGraw(raw / "r.graw", *proc::decodeGraw(uniformCapture(0), "r"));
+        if (auto wrote =
+                proc::writeGraw(raw / "r.graw", *proc::decodeGraw(test::uniformCapture({0}), "r"));
             !wrote) {
             return wrote.error();
         }
@@ -185,7 +169,7 @@ TEST(CalibrationReference, IsBinnedAgainWhereAnotherLensMapIsWanted) {
         const auto bytes = encodeReference({{.name = "white"}, *signals}, {0_deg});
         if (!bytes) return bytes.error();
         return store->addCalibration({.rig = "R", .kind = "white", .dateUtc = "t"},
-                                     {.file = *bytes, .raw = uniformCapture(0)});
+                                     {.file = *bytes, .raw = test::uniformCapture({0})});
     }();
     ASSERT_TRUE(reference) << reference.error().message;
     const CalibrationRecord secondMirror = keepLens(second);
@@ -199,12 +183,13 @@ TEST(CalibrationReference, IsBinnedAgainWhereAnotherLensMapIsWanted) {
 }
 
 TEST(CalibrationReference, RawCaptureThatIsNoneIsNamed) {
-    const auto none = binned("/no/such.graw", lensWith(4));
+    const auto none = binned("/no/such.graw", test::evenLens(4));
     ASSERT_FALSE(none);
     EXPECT_NE(none.error().message.find("/no/such.graw"), std::string::npos);
     const test::TempFolder folder;
-    ASSERT_TRUE(proc::writeGraw(folder / "r.graw", *proc::decodeGraw(uniformCapture(64), "r")));
-    EXPECT_EQ(binned(folder / "r.graw", lensWith(4)).error().kind, ErrorKind::File);
+    ASSERT_TRUE(
+        proc::writeGraw(folder / "r.graw", *proc::decodeGraw(test::uniformCapture({64}), "r")));
+    EXPECT_EQ(binned(folder / "r.graw", test::evenLens(4)).error().kind, ErrorKind::File);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <cmath>
 
 #include "proc/models/spec.h"
 #include "tests/support/sample_sets.h"
@@ -13,9 +14,7 @@ namespace {
 constexpr Radians kLens = 0.01_deg;
 
 /// A surface whose LEDs each see a normal of their own.
-proc::SampleSet seen(const std::string& spec, const std::vector<Direction>& normals) {
-    const auto surface = proc::makeModel(spec);
-    EXPECT_TRUE(surface) << surface.error().message;
+proc::SampleSet seen(const Scatterer& surface, const std::vector<Direction>& normals) {
     proc::SampleSet set;
     const Radians incidences[] = {0_deg, 20_deg, 40_deg, 60_deg};
     for (std::size_t led = 0; led < 4; ++led) {
@@ -27,11 +26,17 @@ proc::SampleSet seen(const std::string& spec, const std::vector<Direction>& norm
         const Direction wi = own(Direction::fromSpherical(incidences[led], Radians(0)));
         set.leds.push_back(
             test::ledTable(incidences[led], [&](Radians /*incidence*/, const Direction& wo) {
-                return (*surface)->answer({wi, own(wo)}).f[Band::G] * own(wo).z() / wo.z();
+                return surface.answer({wi, own(wo)}).f[Band::G] * own(wo).z() / wo.z();
             }));
     }
     set.info.budgetJson = R"([{"led":0,"band":"r","components":[]}])";
     return set;
+}
+
+proc::SampleSet seen(const std::string& spec, const std::vector<Direction>& normals) {
+    const auto surface = proc::makeModel(spec);
+    EXPECT_TRUE(surface) << surface.error().message;
+    return surface ? seen(**surface, normals) : proc::SampleSet();
 }
 
 const std::string kPlastic = "lambert,albedo=0.1+ggx,alpha=0.1,f0=0.04";
@@ -67,6 +72,24 @@ TEST(SamplePose, MattSamplesAreNeverWavyNorTilted) {
         ASSERT_TRUE(same) << spec << same.error().message;
         EXPECT_FALSE(corrected(*same)) << spec;
     }
+}
+
+TEST(SamplePose, LobeThatDoesNotTellItsTiltHasOneInItsUncertainties) {
+    struct Ring : Scatterer {
+        [[nodiscard]] Answer answer(const LightView& pair) const override {
+            const double off = angleBetween({pair.out, mirrorOf(pair.in)}).degrees();
+            Answer answer;
+            answer.f = LedBands::all(0.01 + std::exp(-std::pow((off - 20) / 2, 2)));
+            return answer;
+        }
+    };
+    const auto sample = seen(Ring(), tilted(0.5_deg));
+    const auto same = referredToItsNormal(sample, kLens, false);
+    ASSERT_TRUE(same) << same.error().message;
+    EXPECT_FALSE(corrected(*same));
+    EXPECT_NE(same->info.qcVerdicts.find("not determined, as the lobe"), std::string::npos)
+        << same->info.qcVerdicts;
+    EXPECT_GT(same->leds[1].bands[0].uSystematic[300], sample.leds[1].bands[0].uSystematic[300]);
 }
 
 TEST(SamplePose, WavyOrSteepIsRefusedUnlessForced) {

@@ -62,6 +62,25 @@ TEST(Cover, MatchesReference) {
     EXPECT_GT(answered, 50);
 }
 
+TEST(Cover, IsFoundUnderALimitThatOnlyItMeets) {
+    // All but the best is cut off, and with it no way that leads there: what the frames tell is
+    // rounded down, so that one frame more may tell nothing, and the next one all.
+    constexpr std::uint64_t kSeed = 20240611;
+    Draw draw{std::mt19937_64(kSeed)};
+    int answered = 0;
+    for (int trial = 0; trial < 1000; ++trial) {
+        SCOPED_TRACE("seed " + std::to_string(kSeed) + ", trial " + std::to_string(trial));
+        const CoverProblem problem = randomProblem(draw, 2, 2, 30);
+        const auto slow = cheapestCoverReference(problem);
+        if (!slow) continue;
+        ++answered;
+        const auto fast = cheapestCover(problem, slow->cost + Nanoseconds(1)).cover;
+        ASSERT_TRUE(fast);
+        EXPECT_EQ(fast->cost, slow->cost);
+    }
+    EXPECT_GT(answered, 300);
+}
+
 TEST(Cover, BoundIsNoMoreThanTheAnswer) {
     constexpr std::uint64_t kSeed = 7;
     Draw draw{std::mt19937_64(kSeed)};

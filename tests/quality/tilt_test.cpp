@@ -4,8 +4,10 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <functional>
 #include <random>
 
+#include "proc/models/ggx.h"
 #include "proc/models/spec.h"
 #include "proc/quality/tilt_correction.h"
 #include "tests/support/sample_sets.h"
@@ -20,6 +22,33 @@ std::unique_ptr<const Scatterer> model(const std::string& spec) {
     EXPECT_TRUE(made) << made.error().message;
     return made ? std::move(*made) : nullptr;
 }
+
+/// Lambert and a lobe of other facets than GGX's: Beckmann's, or GTR's with a longer tail.
+struct OtherLobe : AnalyticModel {
+    enum class Facets {
+        Beckmann,
+        Gtr15
+    };
+    Facets facets;
+    double alpha, f0, albedo;
+    OtherLobe(Facets of, double width, double reflectance, double diffuse)
+        : facets(of), alpha(width), f0(reflectance), albedo(diffuse) {}
+
+protected:
+    [[nodiscard]] LedBands evaluate(const LightView& pair) const override {
+        const Eigen::Vector3d half = (pair.in.vector() + pair.out.vector()).normalized();
+        const double c2 = half.z() * half.z(), a2 = alpha * alpha;
+        double d = 0;
+        if (facets == Facets::Beckmann) {
+            d = std::exp((1 - 1 / c2) / a2) / (kPi * a2 * c2 * c2);
+        } else {  // gamma = 1.5
+            d = (a2 - 1) / (2 * kPi * (1 - 1 / alpha)) / std::pow(1 + (a2 - 1) * c2, 1.5);
+        }
+        const double v = ggxV(pair, {alpha, alpha}, Masking::HeightCorrelated);
+        const LedBands fresnel = schlick(LedBands::all(f0), half.dot(pair.in.vector()));
+        return LedBands::all(albedo / kPi + d * v * fresnel[Band::G]);
+    }
+};
 
 Direction normalAt(Radians tilt, Radians toward) { return Direction::fromSpherical(tilt, toward); }
 
@@ -103,6 +132,78 @@ TEST(Tilt, OfALobeThatIsNoGgxIsFoundToATenthOfADegree) {
     }
 }
 
+using Facets = OtherLobe::Facets;
+
+const std::vector<OtherLobe> kSharp{{Facets::Beckmann, 0.1, 0.9, 0},
+                                    {Facets::Beckmann, 0.1, 0.04, 0.1},
+                                    {Facets::Gtr15, 0.05, 0.9, 0},
+                                    {Facets::Gtr15, 0.1, 0.04, 0.3}};
+const OtherLobe kWide{Facets::Beckmann, 0.3, 0.5, 0.1};
+
+const std::vector<Direction> kWaves{normalAt(0.5_deg, 0_deg),
+                                    normalAt(0.5_deg, 90_deg),
+                                    normalAt(0.5_deg, 180_deg),
+                                    normalAt(0.5_deg, 270_deg)};
+
+std::string named(const OtherLobe& lobe) {
+    return (lobe.facets == Facets::Beckmann ? "Beckmann " : "GTR ") + std::to_string(lobe.alpha);
+}
+
+TEST(Tilt, OfBeckmannAndGtrLobesIsFoundWellEnoughToBeCorrected) {
+    for (const OtherLobe& lobe : kSharp) {
+        SCOPED_TRACE(named(lobe));
+        const Direction normal = normalAt(0.5_deg, 70_deg);
+        const auto found = estimateTilt(seen(lobe, normal), kLens);
+        ASSERT_TRUE(found);
+        EXPECT_TRUE(found->determined);
+        const double wrong = degreesApart(found->joint.direction, normal);
+        EXPECT_LT(wrong, 0.02);
+        EXPECT_LT(wrong, 3 * found->joint.u.degrees());
+        EXPECT_LT(found->joint.u.degrees(), 0.1);
+        EXPECT_LT(found->waviness.degrees(), 0.05) << "it is tilted, not wavy";
+    }
+}
+
+TEST(Tilt, OfAWideLobeThatIsNoGgxIsWithinItsUncertaintyAndNoWave) {
+    const Direction normal = normalAt(0.5_deg, 70_deg);
+    const auto found = estimateTilt(seen(kWide, normal), kLens);
+    ASSERT_TRUE(found);
+    EXPECT_LT(degreesApart(found->joint.direction, normal), found->joint.u.degrees());
+    EXPECT_LT(found->joint.u.degrees(), 0.5);
+    EXPECT_LT(found->waviness.degrees(), 0.1);
+}
+
+TEST(Tilt, WavesOfLobesThatAreNoGgxAreNotHiddenByTheMisfit) {
+    std::vector<OtherLobe> all = kSharp;
+    all.push_back(kWide);
+    for (const OtherLobe& lobe : all) {
+        SCOPED_TRACE(named(lobe));
+        const auto wavy = estimateTilt(seen(lobe, kWaves), kLens);
+        ASSERT_TRUE(wavy);
+        EXPECT_NEAR(wavy->waviness.degrees(), 0.5, 0.1);
+    }
+}
+
+TEST(Tilt, OfALobeThatIsNotToBeFittedIsNotDeterminedWhichIsNotNothing) {
+    // A ring: bright where no distribution of facets about one normal puts it.
+    struct Ring : AnalyticModel {
+    protected:
+        [[nodiscard]] LedBands evaluate(const LightView& pair) const override {
+            const double off = angleBetween({pair.out, mirrorOf(pair.in)}).degrees();
+            return LedBands::all(0.01 + std::exp(-std::pow((off - 20) / 2, 2)));
+        }
+    };
+    const auto found = estimateTilt(seen(Ring(), Direction()), kLens);
+    ASSERT_TRUE(found);
+    EXPECT_FALSE(found->determined);
+    EXPECT_EQ(found->joint.tilt().value(), 0);
+    EXPECT_DOUBLE_EQ(found->joint.u.value(), 0.02);
+    EXPECT_EQ(found->waviness.value(), 0);
+    ASSERT_EQ(found->leds.size(), 4U);
+    EXPECT_FALSE(found->leds[0]);
+    ASSERT_EQ(found->lobes.size(), 4U);
+}
+
 TEST(Tilt, OfAMattSampleIsNotDetermined) {
     EXPECT_FALSE(estimateTilt(seen(*model("lambert,albedo=0.5"), Direction()), kLens));
 }
@@ -120,12 +221,7 @@ TEST(Tilt, OfNothingIsNotDetermined) {
 
 TEST(Tilt, WavesAreSeenWhereTheLedsDisagree) {
     const auto surface = model("lambert,albedo=0.1+ggx,alpha=0.1,f0=0.04");
-    const auto wavy = estimateTilt(seen(*surface,
-                                        {normalAt(0.5_deg, 0_deg),
-                                         normalAt(0.5_deg, 90_deg),
-                                         normalAt(0.5_deg, 180_deg),
-                                         normalAt(0.5_deg, 270_deg)}),
-                                   kLens);
+    const auto wavy = estimateTilt(seen(*surface, kWaves), kLens);
     ASSERT_TRUE(wavy);
     EXPECT_NEAR(wavy->waviness.degrees(), 0.5, 0.1);
 }
@@ -180,6 +276,37 @@ TEST(TiltCorrection, UncertaintyOfTheTiltIsTheSlopeOfTheLobe) {
                              shown(*surface, Direction(), {Direction(), wo}) -
                          1;
     EXPECT_NEAR(added / before.f[cell], std::abs(moved), 0.1 * std::abs(moved));
+}
+
+/// What `change` adds to u_systematic of a cell on the flank of a lobe, relative to f.
+template <class Change>
+double addedOnTheFlank(const SampleSet& sample, const Change& change) {
+    const auto cell = *CellGrid::cellAt(Direction::fromSpherical(4.5_deg, 10_deg));
+    const SampleSet after = change(sample);
+    const double before =
+        sample.leds[0].bands[0].uSystematic[cell] / sample.leds[0].bands[0].f[cell];
+    const CellSamples& cells = after.leds[0].bands[0];
+    return std::sqrt(std::pow(cells.uSystematic[cell] / cells.f[cell], 2) - before * before);
+}
+
+TEST(TiltCorrection, WavesAddAsMuchAboutEitherAxisAsAnUncertaintyOfThatSize) {
+    const SampleSet flat = seen(*model("ggx,alpha=0.1,f0=0.5"), Direction());
+    TiltEstimate unsure{.joint = {Direction(), 0.1_deg},
+                        .leds = {},
+                        .lobes = std::vector<TiltLobe>(4, {.diffuse = 0, .alpha = 0.1, .f0 = 0.5}),
+                        .waviness = {}};
+    TiltEstimate wavy = unsure;
+    wavy.joint.u = Radians(0);
+    wavy.waviness = 0.1_deg * std::sqrt(2.0);
+    using Change = std::function<SampleSet(const SampleSet&, const TiltEstimate&)>;
+    for (const Change& change : {Change(withTiltUncertainty), Change(tiltCorrected)}) {
+        const auto with = [&](const TiltEstimate& estimate) {
+            return addedOnTheFlank(flat,
+                                   [&](const SampleSet& set) { return change(set, estimate); });
+        };
+        EXPECT_GT(with(wavy), 0.01);
+        EXPECT_NEAR(with(wavy), with(unsure), 1e-9);
+    }
 }
 
 }  // namespace

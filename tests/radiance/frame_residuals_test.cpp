@@ -26,7 +26,8 @@ template <class Gain>
 FrameReport reportOf(const std::vector<Shot>& shots,
                      Size size,
                      std::mt19937_64& random,
-                     Gain gain) {
+                     Gain gain,
+                     const NominalUncertainty& nominal = {}) {
     const DarkLibrary darks = perfectDarks(shots, size);
     MergeAccumulator accumulator(Band::G, darks, {});
     for (std::size_t i = 0; i < shots.size(); ++i) {
@@ -36,15 +37,22 @@ FrameReport reportOf(const std::vector<Shot>& shots,
     }
     const auto state = mergeSums(accumulator.sums());
     EXPECT_TRUE(state);
-    return frameResiduals(accumulator.sums(), *state);
+    return frameResiduals(accumulator.sums(), *state, 0.01, nominal);
 }
+
+/// A rig that grants its exposures to 0.2 us, and dims its LEDs to 1 %.
+const NominalUncertainty kWellKnown{.exposure = Seconds(0.2e-6), .dimmed = 0.01};
 
 TEST(FrameResiduals, AStepOfFivePerCentIsFlagged) {
     std::mt19937_64 random(31);
     for (std::size_t first = 1; first < ladder().size(); ++first) {
         for (const double step : {1.05, 0.95}) {
             const FrameReport report = reportOf(
-                ladder(), {96, 96}, random, [&](std::size_t i) { return i >= first ? step : 1; });
+                ladder(),
+                {96, 96},
+                random,
+                [&](std::size_t i) { return i >= first ? step : 1; },
+                kWellKnown);
             ASSERT_TRUE(report.change) << first;
             EXPECT_EQ(report.change->first, first);
             EXPECT_EQ(report.change->last, ladder().size() - 1);
@@ -105,6 +113,66 @@ TEST(FrameResiduals, NoFalseAlarmInAThousandCleanBrackets) {
     EXPECT_LT(beyond3, 0.006 * offsets);
     EXPECT_GT(beyond3, 0.0009 * offsets);
     EXPECT_NEAR(chiSquare / freedom, 1, 0.01);
+}
+
+TEST(FrameResiduals, AConstantErrorOfAScaleIsNoStep) {
+    std::mt19937_64 random(36);
+    const auto first = [](std::size_t i) { return i == 0 ? 1.04 : 1; };
+    EXPECT_TRUE(reportOf(ladder(), {96, 96}, random, first, kWellKnown).change);
+    // 0.8 us more than 20: less than twice what the exposure may be off.
+    const FrameReport report = reportOf(ladder(), {96, 96}, random, first);
+    EXPECT_FALSE(report.change);
+    ASSERT_TRUE(report.frames[0].offset);
+    EXPECT_GT(report.frames[0].offset->significance(), 5) << "it is seen all the same";
+}
+
+TEST(FrameResiduals, AStepWithinAGroupIsNoErrorOfItsScale) {
+    std::vector<Shot> shots;
+    for (const double seconds : {20e-6, 320e-6})
+        for (int i = 0; i < 8; ++i) shots.push_back({.seconds = seconds});
+    std::mt19937_64 random(37);
+    const FrameReport report =
+        reportOf(shots, {96, 96}, random, [](std::size_t i) { return i >= 4 ? 1.03 : 1; });
+    ASSERT_TRUE(report.change);
+    EXPECT_EQ(report.change->first, 4U);
+    EXPECT_GT(report.change->offset.size, 2 * report.change->uScale);
+}
+
+TEST(FrameResiduals, TheNoiseOfADarkFrameIsNoStep) {
+    // All frames of an exposure share one dark frame of the same noise as theirs: as if it were of
+    // each frame's own, the difference of two groups of 8 would be thought 2.1 times as certain.
+    constexpr Size kSize{16, 16};
+    const Image<double> light = test::lobe(kSize, 3e3);
+    const NominalUncertainty exact{.exposure = Seconds(0), .relative = 1e-9, .dimmed = 0};
+    std::mt19937_64 random(38);
+    int alarms = 0;
+    double chiSquare = 0, freedom = 0;
+    for (int bracket = 0; bracket < 400; ++bracket) {
+        DarkLibrary darks;
+        for (const double seconds : {1e-3, 2e-3}) {
+            const Frame dark = test::take({.seconds = seconds, .level = 0}, kSize, random);
+            auto mean = averageDark({&dark, 1}, {});
+            ASSERT_TRUE(mean) << mean.error().message;
+            mean->hot.clear();
+            darks.add(std::move(*mean));
+        }
+        MergeAccumulator accumulator(Band::G, darks, {});
+        for (const double seconds : {1e-3, 2e-3})
+            for (int i = 0; i < 8; ++i)
+                ASSERT_TRUE(accumulator.add(test::takeScene(light, {.seconds = seconds}, random)));
+        const auto state = mergeSums(accumulator.sums());
+        ASSERT_TRUE(state);
+        const FrameReport report = frameResiduals(accumulator.sums(), *state, 0, exact);
+        alarms += report.change ? 1 : 0;
+        for (const FrameResidual& frame : report.frames) {
+            chiSquare += frame.chiSquare;
+            freedom += static_cast<double>(frame.freedom);
+        }
+    }
+    EXPECT_EQ(alarms, 0);
+    // The light of a pixel is its own, and none below 0: 6 % too much shot noise is thought of
+    // here.
+    EXPECT_NEAR(chiSquare / freedom, 1, 0.08);
 }
 
 TEST(FrameResiduals, OneFrameSaysNothing) {

@@ -100,20 +100,54 @@ TEST(Linearity, APointOfTheSweepIsTheMeanAboveTheDark) {
     std::mt19937_64 random(64);
     const std::vector<test::Shot> shots{{.electronsPerSecond = 2e6, .seconds = 1e-3}};
     const DarkLibrary darks = test::perfectDarks(shots, {50, 40});
-    std::vector<Frame> frames(3, test::take(shots[0], {50, 40}, random));
-    for (Frame& frame : frames) frame = test::take(shots[0], {50, 40}, random);
-    const auto point = sweepPoint(frames, Band::G, darks, {});
-    ASSERT_TRUE(point) << point.error().message;
-    EXPECT_DOUBLE_EQ(point->tau, 1e-3);
-    EXPECT_NEAR(point->meanDn, 2000 / 2.6, 4 * point->u);
-    EXPECT_NEAR(point->u, std::sqrt((2000 + 2.4 * 2.4) / 6000) / 2.6, 1e-3);
+    std::vector<Frame> frames;
+    for (int i = 0; i < 3; ++i) frames.push_back(test::take(shots[0], {50, 40}, random));
+    const auto points = sweepPoints(frames, Band::G, darks, {});
+    ASSERT_TRUE(points) << points.error().message;
+    ASSERT_EQ(points->size(), 1U);
+    const SweepPoint& point = points->front();
+    EXPECT_DOUBLE_EQ(point.tau, 1e-3);
+    EXPECT_NEAR(point.meanDn, 2000 / 2.6, 4 * point.u);
+    EXPECT_NEAR(point.u, std::sqrt((2000 + 2.4 * 2.4) / 6000) / 2.6, 1e-3);
     // Saturated: refused, not cut off.
-    std::vector<Frame> bright{
-        test::take({.electronsPerSecond = 2e7, .seconds = 1e-3}, {50, 40}, random)};
-    const auto refusal = sweepPoint(bright, Band::G, darks, {});
+    frames.push_back(test::take({.electronsPerSecond = 2e7, .seconds = 1e-3}, {50, 40}, random));
+    const auto refusal = sweepPoints(frames, Band::G, darks, {});
     ASSERT_FALSE(refusal);
     EXPECT_EQ(refusal.error().kind, ErrorKind::Quality);
-    EXPECT_FALSE(sweepPoint({}, Band::G, darks, {}));
+    EXPECT_FALSE(sweepPoints({}, Band::G, darks, {}));
+}
+
+/// Frames of exposures up to just below saturation; the light of a pixel is times `share(x)`.
+template <class Share>
+Result<std::vector<SweepPoint>> sweepOf(Size size, const Share& share) {
+    std::mt19937_64 random(66);
+    std::vector<test::Shot> shots;
+    for (int i = 1; i <= 8; ++i) shots.push_back({.seconds = 1e-3 * i});
+    Image<double> light(size);
+    for (int y = 0; y < size.height; ++y)
+        for (int x = 0; x < size.width; ++x) light.at(x, y) = 1.22e6 * share(x);
+    std::vector<Frame> frames;
+    for (const test::Shot& shot : shots) frames.push_back(test::takeScene(light, shot, random));
+    const DarkLibrary darks = test::perfectDarks(shots, size);
+    return sweepPoints(frames, Band::G, darks, {});
+}
+
+TEST(Linearity, PixelsThatSaturateInOneExposureAreLeftOutOfAll) {
+    // One column in 128 is 6 % brighter, and saturates in the last exposure: left out of that
+    // alone, it would bend a proportional sensor by 0.05 %.
+    const auto points = sweepOf({256, 100}, [](int x) { return x == 64 || x == 65 ? 1.06 : 1; });
+    ASSERT_TRUE(points) << points.error().message;
+    ASSERT_EQ(points->size(), 8U);
+    for (const SweepPoint& point : *points)
+        EXPECT_NEAR(point.meanDn, 1.22e6 * point.tau / 2.6, 4 * point.u) << point.tau;
+}
+
+TEST(Linearity, AnUnevenSceneIsRefused) {
+    const auto uneven = sweepOf({40, 40}, [](int x) { return 0.8 + 0.2 * x / 40.0; });
+    ASSERT_FALSE(uneven);
+    EXPECT_NE(uneven.error().message.find("lit evenly"), std::string::npos)
+        << uneven.error().message;
+    EXPECT_TRUE(sweepOf({40, 40}, [](int x) { return 0.9 + 0.1 * x / 40.0; }));
 }
 
 TEST(Linearity, RefusesASweepThatCannotTell) {

@@ -134,6 +134,8 @@ TEST(PhotonTransfer, RefusesWhatSaysNothing) {
     };
     EXPECT_TRUE(has(message({}), "0 usable pairs of 0"));
     EXPECT_TRUE(has(message(framesOf({0, 0, 0}, random)), "different light"));
+    EXPECT_TRUE(has(message(framesOf({0, 0, 4e-3}, random)), "different light"));
+    EXPECT_TRUE(has(message(framesOf({0, 4e-3, 4e-3}, random)), "different light"));
     EXPECT_TRUE(has(message(framesOf({1e-3, 2e-3}, random)), "2 usable pairs of 2"));
     EXPECT_TRUE(has(message(framesOf({0.1, 0.2, 0.3, 0}, random)), "1 usable pairs of 4"));
     std::vector<Frame> unlike = framesOf(kSweep, random);

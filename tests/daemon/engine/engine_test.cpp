@@ -443,6 +443,20 @@ TEST_F(EngineOnRig, StoredSampleIsWorkedOutAgainWithoutARig) {
     EXPECT_EQ(engine->status().state, EngineState::Offline);
 }
 
+TEST_F(EngineOnRig, LostRigIsNotTakenForTheReasonOfAJobThatNeedsNone) {
+    RunningEngine engine(folder.path(), port);
+    engine.await(EngineState::Idle);
+    Watcher watcher(*engine);
+    port.cable.pull();
+    const auto id = submit(engine, {.kind = JobKind::Recalibrate, .name = "tile"});
+    watcher.until("job", {{"job", id}, {"state", "failed"}});
+    EXPECT_EQ(kept(id).error->kind, ErrorKind::File);
+    engine.await(EngineState::Offline);
+    const std::string obstacle = engine->status().obstacle;
+    EXPECT_NE(obstacle, "");
+    EXPECT_EQ(obstacle.find("tile"), std::string::npos) << obstacle;
+}
+
 TEST_F(EngineOnRig, ExceptionEndsTheJobAndNotTheDaemon) {
     port.failsToPlace = true;
     RunningEngine engine(folder.path(), port);
