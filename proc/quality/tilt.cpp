@@ -9,6 +9,7 @@
 
 #include "proc/models/ggx.h"
 #include "proc/optics/cell_grid.h"
+#include "proc/quality/cell_points.h"
 #include "proc/solve/least_squares.h"
 
 namespace gonio::proc {
@@ -24,13 +25,17 @@ constexpr double kModelError = 0.02;
 constexpr double kWorstUncertainty = 0.02;  // rad: beyond it nothing is known of the normal
 constexpr double kSteepest = 0.25;          // tan of the largest tilt that is looked for
 constexpr int kMostIterations = 50;
+constexpr double kGoodFit = 0.5;  // of what a lobe may be off: there is no better one
 // There is a lobe where it explains so much of chi-square.
 constexpr double kLobeChiSquare = 50, kLobeGain = 1.05;
 constexpr double kLeastShare = 0.3;  // of f in the mirror direction, under half of the LEDs
+// A narrower lobe is another in the middle of a cell than over all of it, by more than 1 %.
+constexpr double kNarrowLobe = 0.06;
 
-/// One measured cell, the bands' mean.
+/// One measured cell, the mean of the bands that were measured.
 struct Sighting {
     Direction wi, wo;
+    std::size_t cell = 0;
     double f = 0, u = 0;
     /// How far a fitted f may be off.
     [[nodiscard]] double sigma() const {
@@ -67,13 +72,20 @@ Parts partsOf(const Shape& shape, const Eigen::Matrix3d& turn, const LightView& 
 
 std::optional<Sighting> sightingAt(const LedTable& led, std::size_t cell) {
     Sighting one{.wi = Direction::fromSpherical(led.incidence, Radians(0)),
-                 .wo = CellGrid::centre(cell)};
+                 .wo = CellGrid::centre(cell),
+                 .cell = cell};
     if (one.wo.theta() > kOutermost) return std::nullopt;
+    int bands = 0;
     for (const CellSamples& band : led.bands) {
-        if (band.size() == 0 || !band.present(cell)) return std::nullopt;
-        one.f += band.f[cell] / static_cast<double>(kBands.size());
-        one.u = std::hypot(one.u, band.uRandom[cell] / static_cast<double>(kBands.size()));
+        if (band.size() == 0) continue;
+        if (!band.present(cell)) return std::nullopt;
+        one.f += band.f[cell];
+        one.u = std::hypot(one.u, band.uRandom[cell]);
+        ++bands;
     }
+    if (bands == 0) return std::nullopt;
+    one.f /= bands;
+    one.u /= bands;
     return one;
 }
 
@@ -111,15 +123,40 @@ Sightings sightingsOf(const LedTable& led) {
 
 Direction normalOf(double x, double y) { return *Direction::fromVector({x, y, 1}); }
 
+/// The mean over the cell.
+Parts partsOver(const Shape& shape, const Eigen::Matrix3d& turn, const Sighting& one) {
+    const std::array<Direction, 4> points = pointsOver(one.cell);
+    Parts mean;
+    for (const Direction& wo : points) {
+        const Parts parts = partsOf(shape, turn, {one.wi, wo});
+        mean.floor += parts.floor / points.size();
+        mean.lobe += parts.lobe / points.size();
+    }
+    return mean;
+}
+
+/// Floor and lobe as each sighting shows them.
+std::vector<Parts> partsOf(std::span<const Sighting> sightings,
+                           const Shape& shape,
+                           const Eigen::Matrix3d& turn) {
+    std::vector<Parts> parts;
+    parts.reserve(sightings.size());
+    for (const Sighting& one : sightings) {
+        parts.push_back(shape.alpha < kNarrowLobe ? partsOver(shape, turn, one)
+                                                  : partsOf(shape, turn, {one.wi, one.wo}));
+    }
+    return parts;
+}
+
 /// How strong floor and lobe are under one LED: linear least squares.
 TiltLobe strengths(std::span<const Sighting> sightings,
                    const Shape& shape,
-                   const Eigen::Matrix3d& turn) {
+                   std::span<const Parts> parts) {
     Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
     Eigen::Vector2d right = Eigen::Vector2d::Zero();
-    for (const Sighting& one : sightings) {
-        const Parts parts = partsOf(shape, turn, {one.wi, one.wo});
-        const Eigen::Vector2d row = Eigen::Vector2d(parts.floor, parts.lobe) / one.sigma();
+    for (std::size_t i = 0; i < sightings.size(); ++i) {
+        const Sighting& one = sightings[i];
+        const Eigen::Vector2d row = Eigen::Vector2d(parts[i].floor, parts[i].lobe) / one.sigma();
         normal += row * row.transpose();
         right += row * (one.f / one.sigma());
     }
@@ -130,9 +167,18 @@ TiltLobe strengths(std::span<const Sighting> sightings,
             .f0 = shape.f0};
 }
 
-double shownBy(const TiltLobe& lobe, const Eigen::Matrix3d& turn, const LightView& pair) {
-    const Parts parts = partsOf({lobe.alpha, lobe.f0}, turn, pair);
+TiltLobe strengths(std::span<const Sighting> sightings,
+                   const Shape& shape,
+                   const Eigen::Matrix3d& turn) {
+    return strengths(sightings, shape, partsOf(sightings, shape, turn));
+}
+
+double shownBy(const TiltLobe& lobe, const Parts& parts) {
     return lobe.diffuse * parts.floor + lobe.specular * parts.lobe;
+}
+
+double shownBy(const TiltLobe& lobe, const Eigen::Matrix3d& turn, const LightView& pair) {
+    return shownBy(lobe, partsOf({lobe.alpha, lobe.f0}, turn, pair));
 }
 
 /// (measured - fitted) over what that may be, of one LED.
@@ -140,11 +186,10 @@ void residualsOf(std::span<const Sighting> sightings,
                  const Shape& shape,
                  const Direction& normal,
                  std::span<double> out) {
-    const Eigen::Matrix3d turn = toSurface(normal);
-    const TiltLobe lobe = strengths(sightings, shape, turn);
+    const std::vector<Parts> parts = partsOf(sightings, shape, toSurface(normal));
+    const TiltLobe lobe = strengths(sightings, shape, parts);
     for (std::size_t i = 0; i < sightings.size(); ++i) {
-        const Sighting& one = sightings[i];
-        out[i] = (one.f - shownBy(lobe, turn, {one.wi, one.wo})) / one.sigma();
+        out[i] = (sightings[i].f - shownBy(lobe, parts[i])) / sightings[i].sigma();
     }
 }
 
@@ -198,6 +243,7 @@ std::optional<FitReport> bestJoint(const std::vector<Sightings>& leds) {
     for (double alpha : {0.05, 0.2, 0.5}) {
         FitReport report = fitJoint(leds, alpha);
         if (report.ok() && (!best || report.rms < best->rms)) best = std::move(report);
+        if (best && best->rms < kGoodFit) break;
     }
     if (!best) return best;
     const double left = best->rms * best->rms * static_cast<double>(countOf(leds));
@@ -210,21 +256,27 @@ std::optional<FitReport> bestJoint(const std::vector<Sightings>& leds) {
 double misfitOf(std::span<const Sighting> sightings,
                 const TiltLobe& lobe,
                 const Direction& normal) {
-    const Eigen::Matrix3d turn = toSurface(normal);
+    const std::vector<Parts> parts = partsOf(sightings, {lobe.alpha, lobe.f0}, toSurface(normal));
     double squares = 0;
-    for (const Sighting& one : sightings) {
-        const double off = one.f - shownBy(lobe, turn, {one.wi, one.wo});
+    for (std::size_t i = 0; i < sightings.size(); ++i) {
+        const Sighting& one = sightings[i];
+        const double off = one.f - shownBy(lobe, parts[i]);
         if (one.f > 0) squares += (off * off - one.u * one.u) / (one.f * one.f);
     }
     return std::sqrt(std::max(0.0, squares) /
                      static_cast<double>(std::max<std::size_t>(1, sightings.size())));
 }
 
-/// Of either axis: the fit's own, what a misfit may do, and the lens map's.
-Radians uncertaintyOf(const FitReport& report, double misfit, double alpha, Radians uAngle) {
-    const double own = std::max(1.0, report.rms) *
-                       std::sqrt(std::max(report.covariance(0, 0), report.covariance(1, 1)));
-    return Radians(std::hypot(own, misfit * alpha / 4, uAngle.value()));
+/// Of either axis: the fit's own, by how far the cells really scatter about it, what a smooth
+/// misfit may do, and the lens map's.
+Normal uncertain(
+    const Direction& normal, const FitReport& report, double misfit, double alpha, Radians uAngle) {
+    const double own =
+        report.rms * std::sqrt(std::max(report.covariance(0, 0), report.covariance(1, 1)));
+    const double seen = std::hypot(own, misfit * alpha / 4);
+    return {.direction = normal,
+            .u = Radians(std::hypot(seen, uAngle.value())),
+            .uSeen = Radians(seen)};
 }
 
 /// One LED's own normal, the lobe's width held.
@@ -246,9 +298,9 @@ std::optional<Normal> normalSeenBy(std::span<const Sighting> sightings,
     if (!report.ok()) return std::nullopt;
     const Direction own = normalOf(report.params[0], report.params[1]);
     const double misfit = misfitOf(sightings, strengths(sightings, shape, toSurface(own)), own);
-    const Radians u = uncertaintyOf(report, misfit, shape.alpha, uAngle);
-    if (u.value() > kWorstUncertainty) return std::nullopt;
-    return Normal{own, u};
+    const Normal normal = uncertain(own, report, misfit, shape.alpha, uAngle);
+    if (normal.u.value() > kWorstUncertainty) return std::nullopt;
+    return normal;
 }
 
 /// A lobe that stands out of its floor: less is the floor's own departure from Lambert's.
@@ -289,18 +341,18 @@ std::optional<TiltEstimate> estimateTilt(const SampleSet& sample, Radians uAngle
     const std::optional<FitReport> report = bestJoint(leds);
     if (!report) return std::nullopt;
     const Shape shape = shapeOf(report->params);
-    TiltEstimate estimate{.joint = {normalOf(report->params[0], report->params[1]), {}},
+    TiltEstimate estimate{.joint = {normalOf(report->params[0], report->params[1]), {}, {}},
                           .leds = {},
                           .lobes = {},
                           .waviness = {}};
-    const Direction& normal = estimate.joint.direction;
+    const Direction normal = estimate.joint.direction;
     for (const Sightings& led : leds) {
         estimate.lobes.push_back(strengths(led, shape, toSurface(normal)));
         const double misfit = misfitOf(led, estimate.lobes.back(), normal);
         estimate.misfit = std::max(estimate.misfit, misfit);
     }
     if (!standsOut(sample, estimate)) return std::nullopt;
-    estimate.joint.u = uncertaintyOf(*report, estimate.misfit, shape.alpha, uAngle);
+    estimate.joint = uncertain(normal, *report, estimate.misfit, shape.alpha, uAngle);
     if (estimate.joint.u.value() > kWorstUncertainty) return std::nullopt;
     for (const Sightings& led : leds) {
         estimate.leds.push_back(normalSeenBy(led, shape, estimate.joint, uAngle));
