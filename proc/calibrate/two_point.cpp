@@ -44,7 +44,7 @@ constexpr std::array<ComponentKind, ComponentCount> kComponents{{
     {"white reference, per direction", 'B', Correlation::PerCell},
     {"black reference", 'B', Correlation::Common},
     {"exposure ratio", 'B', Correlation::PerState},
-    {"linearity", 'B', Correlation::PerState},
+    {"linearity", 'B', Correlation::Common},
     {"direction of the cell (lens map)", 'A', Correlation::PerState},
     {"LED drift", 'B', Correlation::PerState},
 }};
