@@ -1,5 +1,5 @@
 #pragma once
-// The uncertainty budget of one state [JCGM100]: for each component how it was evaluated, how it
+// The uncertainty budget of one state [Gum2008]: for each component how it was evaluated, how it
 // correlates between cells, how large it is, and what that does to f: relative u(f) = sensitivity x
 // size, medians over the cells present.
 

@@ -1,5 +1,5 @@
 #pragma once
-// Propagation of distributions [JCGM101] through the measurement equation of one cell
+// Propagation of distributions [GumMonteCarlo2008] through the measurement equation of one cell
 // (two_point.h): where first order is wrong, or on request. Each draw takes every input from its
 // distribution (Gaussian, as all that is known of each is its standard uncertainty) and works f out
 // again: signals by their noise and by the light of their captures, the tiles by their
