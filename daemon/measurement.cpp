@@ -44,7 +44,11 @@ Json toJson(const proc::Budget& budget) {
         list.push_back({{"name", component.name},
                         {"type", std::string(1, component.type)},
                         {"correlation", proc::name(component.correlation)},
-                        {"median_relative", component.medianRelative}});
+                        {"median_relative", component.medianRelative},
+                        {"size", component.size},
+                        {"unit", component.unit},
+                        {"sensitivity", component.sensitivity()},
+                        {"freedom", component.freedom ? Json(*component.freedom) : Json()}});
     }
     return list;
 }
@@ -150,6 +154,13 @@ proc::SampleSet asIfFlat(const PlacementSignals& signals,
                          const std::vector<Radians>& ledAngles,
                          const RigReferences& references,
                          const proc::AngleUncertainty& uAngle) {
+    const int spots = references.lens.spots;
+    const proc::RigUncertainty rig{
+        .angle = uAngle,
+        .ledDrift = references.profile.ledDrift,
+        .exposureRatio = references.profile.exposureRatio,
+        .linearity = references.profile.linearity,
+        .angleFreedom = 2.0 * spots - static_cast<double>(proc::LensMap::kParameters)};
     proc::SampleSet set;
     Json budgets = Json::array();
     for (std::size_t led = 0; led < signals.size(); ++led) {
@@ -164,9 +175,10 @@ proc::SampleSet asIfFlat(const PlacementSignals& signals,
                                  .black = *references.certified.black},
                                 lightAt(ledAngles[led]),
                                 band,
-                                {.angle = uAngle, .ledDrift = references.profile.ledDrift});
+                                rig);
             budgets.push_back({{"led", led},
                                {"band", std::string(letter(band))},
+                               {"monte_carlo_cells", calibrated.propagated},
                                {"components", toJson(calibrated.budget)}});
             table.bands[b] = std::move(calibrated.samples);
         }

@@ -42,6 +42,9 @@ public:
         if (!value || !(*value >= 0 && *value < 1)) complain(key, "a number from 0 to below 1");
         return value.value_or(0);
     }
+    double relativeOr(std::string_view key, double otherwise) {
+        return table_.at_path(key) ? relative(key) : otherwise;
+    }
     std::string text(std::string_view key) {
         const auto value = table_.at_path(key).value<std::string>();
         if (!value || value->empty()) complain(key, "a text");
@@ -158,6 +161,8 @@ Result<RigProfile> readProfile(const fs::path& file) {
     profile.noise.fullScaleDn = keys.positive("sensor.full_scale_dn");
     profile.wedgeTolerance = Radians::fromDegrees(keys.positive("mirror.wedge_u_deg"));
     profile.ledDrift = keys.relative("led.drift_relative");
+    profile.exposureRatio = keys.relativeOr("uncertainty.exposure_ratio_relative", 0);
+    profile.linearity = keys.relativeOr("uncertainty.linearity_relative", 0);
     profile.exposures = keys.wholeMicroseconds("bracket.exposures_us");
     profile.dimLevels = keys.fractions("bracket.dim_levels");
     const std::string white = keys.text("references.white");

@@ -25,6 +25,8 @@ struct RigProfile {
     proc::SensorNoise noise;
     Radians wedgeTolerance;                ///< of the mirror's wedges about either axis, k = 1
     double ledDrift = 0;                   ///< of the light between two captures, relative, k = 1
+    double exposureRatio = 0;              ///< of an effective exposure time, relative, k = 1
+    double linearity = 0;                  ///< what is left of it, relative, k = 1
     std::vector<Microseconds> exposures;   ///< ascending
     std::vector<double> dimLevels;         ///< fractions of full level, descending
     std::filesystem::path whiteReference;  ///< empty ("1/pi" in the file): without a table

@@ -3,6 +3,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "daemon/budget_table.h"
 #include "daemon/cli/commands.h"
 #include "daemon/cli/output.h"
 #include "daemon/material.h"
@@ -161,7 +162,14 @@ Result<void> info(const CommonOptions& common, const std::string& file) {
         printJson(json);
     } else {
         std::cout << "file: " << file << "\n";
-        printPlain(*facts, "");
+        Json plain = *facts;
+        const std::string budget = budgetTable(plain.value("budget", Json::array()));
+        if (!budget.empty()) plain.erase("budget");
+        printPlain(plain, "");
+        if (!budget.empty()) {
+            std::cout << "budget, standard uncertainties, medians over cells and states:\n"
+                      << budget;
+        }
     }
     return {};
 }

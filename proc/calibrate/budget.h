@@ -1,7 +1,9 @@
 #pragma once
-// The uncertainty budget of one state (GUM: JCGM 100): for each component how it was evaluated, how
-// it correlates between cells, and its median share of f.
+// The uncertainty budget of one state [Gum2008]: for each component how it was evaluated, how it
+// correlates between cells, how large it is, and what that does to f: relative u(f) = sensitivity x
+// size, medians over the cells present.
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +22,12 @@ struct BudgetComponent {
     char type = 'B';  ///< 'A': from repeats or statistics; 'B': from elsewhere
     Correlation correlation = Correlation::PerCell;
     double medianRelative = 0;  ///< k = 1, of f, over the cells present
+    double size = 0;            ///< k = 1, of the input, in `unit`
+    std::string unit = "relative";
+    std::optional<double> freedom{};  ///< degrees of freedom; empty: so many that it is sure
+
+    /// Relative change of f per unit of the input; 0 where the input is known exactly.
+    [[nodiscard]] double sensitivity() const { return size > 0 ? medianRelative / size : 0; }
 };
 
 using Budget = std::vector<BudgetComponent>;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cassert>
 #include <cmath>
 #include <optional>
@@ -22,6 +23,8 @@ enum Component : std::size_t {
     WhiteCommon,
     WhitePerDirection,
     BlackCommon,
+    ExposureRatio,
+    NonLinearity,
     Geometry,
     LedDrift,
     ComponentCount
@@ -40,6 +43,8 @@ constexpr std::array<ComponentKind, ComponentCount> kComponents{{
     {"white reference, common", 'B', Correlation::Common},
     {"white reference, per direction", 'B', Correlation::PerCell},
     {"black reference", 'B', Correlation::Common},
+    {"exposure ratio", 'B', Correlation::PerState},
+    {"linearity", 'B', Correlation::Common},
     {"direction of the cell (lens map)", 'A', Correlation::PerState},
     {"LED drift", 'B', Correlation::PerState},
 }};
@@ -50,29 +55,73 @@ double quadrature(const Contributions& u, std::size_t first, std::size_t behind)
     return std::sqrt(sum);
 }
 
-/// |grad f| per radian at a cell, from its present neighbours; what is missing adds no slope.
-double slope(const std::vector<double>& f, const std::vector<Flags>& flags, std::size_t cell) {
-    const CellPlace at = CellGrid::place(cell);
-    const Direction centre = CellGrid::centre(cell);
-    const auto difference = [&](const std::optional<std::size_t>& a,
-                                const std::optional<std::size_t>& b) {
-        const std::size_t from = a && flags[*a].has(Flag::Measured) ? *a : cell;
-        const std::size_t to = b && flags[*b].has(Flag::Measured) ? *b : cell;
-        const double away = angleBetween({CellGrid::centre(from), CellGrid::centre(to)}).value();
-        return away > 0 ? (f[to] - f[from]) / away : 0.0;
-    };
-    const auto inRow = [&](int row) -> std::optional<std::size_t> {
-        if (row < 0 || row >= CellGrid::kRows) return std::nullopt;
-        return CellGrid::cellAt(
-            Direction::fromSpherical(Radians::fromDegrees(row + 0.5), centre.phi()));
-    };
-    const int sectors = CellGrid::sectors(at.row);
-    const auto beside = [&](int step) -> std::optional<std::size_t> {
-        return CellGrid::index({at.row, (at.sector + step + sectors) % sectors});
-    };
-    return std::hypot(difference(inRow(at.row - 1), inRow(at.row + 1)),
-                      difference(beside(-1), beside(1)));
+/// Median over the cells present of a signal's relative noise.
+double medianNoise(const CellSignal& signal, const CellSamples& samples) {
+    std::vector<double> relative;
+    for (std::size_t cell = 0; cell < samples.size(); ++cell) {
+        if (!samples.present(cell) || signal.signal[cell] == 0) continue;
+        relative.push_back(std::sqrt(signal.variance[cell]) / std::abs(signal.signal[cell]));
+    }
+    return relative.empty() ? 0 : median(std::move(relative));
 }
+
+double medianDegrees(const AngleUncertainty& angle, const CellSamples& samples) {
+    std::vector<double> degrees;
+    for (std::size_t cell = 0; cell < samples.size(); ++cell) {
+        if (samples.present(cell)) degrees.push_back(angle(CellGrid::centre(cell)).degrees());
+    }
+    return degrees.empty() ? 0 : median(std::move(degrees));
+}
+
+/// What goes into the components, each in its unit.
+void addSizes(Budget& budget,
+              const CellSamples& samples,
+              const CellSignal& sample,
+              const References& references,
+              const RigUncertainty& rig) {
+    const Certificate& white = references.white.certificate();
+    budget[SampleNoise].size = medianNoise(sample, samples);
+    budget[WhiteNoise].size = medianNoise(references.whiteSignal, samples);
+    budget[BlackNoise].size = medianNoise(references.blackSignal, samples);
+    budget[WhiteCommon].size = white.uCommon;
+    budget[WhitePerDirection].size = white.uPerDirection;
+    budget[BlackCommon].size = references.black.certificate().uCommon;
+    budget[ExposureRatio].size = rig.exposureRatio;
+    budget[NonLinearity].size = rig.linearity;
+    budget[Geometry].size = medianDegrees(rig.angle, samples);
+    budget[Geometry].unit = "degree";
+    budget[Geometry].freedom = rig.angleFreedom;
+    budget[LedDrift].size = rig.ledDrift;
+}
+
+/// All that f of a state is made of.
+struct Measurement {
+    const CellSignal& sample;
+    const References& references;
+    const Direction& wi;
+    Band band;
+    const RigUncertainty& rig;
+
+    /// Of a cell that is present in `samples`, where f and u_random are known.
+    [[nodiscard]] CellInputs inputsOf(std::size_t cell, const CellSamples& samples) const {
+        const LightView pair{.in = wi, .out = CellGrid::centre(cell)};
+        const Certificate& white = references.white.certificate();
+        return {.sample = sample.signal[cell],
+                .white = references.whiteSignal.signal[cell],
+                .black = references.blackSignal.signal[cell],
+                .sampleVariance = sample.variance[cell],
+                .whiteVariance = references.whiteSignal.variance[cell],
+                .blackVariance = references.blackSignal.variance[cell],
+                .fWhite = references.white.answer(pair).f[band],
+                .fBlack = references.black.answer(pair).f[band],
+                .uWhite = std::hypot(white.uCommon, white.uPerDirection),
+                .uBlack = references.black.certificate().uCommon,
+                .uLight = std::hypot(rig.ledDrift, rig.exposureRatio, rig.linearity),
+                .uAngle = rig.angle(pair.out).value(),
+                .uElse = 0,
+                .shape = localShape(samples, cell)};
+    }
+};
 
 Budget summary(const CellSamples& samples, const std::vector<Contributions>& contributions) {
     Budget budget;
@@ -96,7 +145,8 @@ Calibrated calibrate(const CellSignal& sample,
                      const References& references,
                      const Direction& wi,
                      Band band,
-                     const RigUncertainty& rig) {
+                     const RigUncertainty& rig,
+                     const MonteCarlo& monteCarlo) {
     const CellSignal& white = references.whiteSignal;
     const CellSignal& black = references.blackSignal;
     assert(sample.size() == CellGrid::count() && white.size() == sample.size() &&
@@ -116,7 +166,10 @@ Calibrated calibrate(const CellSignal& sample,
             if (!certifiedWhite.present() || !certifiedBlack.present()) continue;
             const double contrast = white.signal[cell] - black.signal[cell];
             const double noise = std::sqrt(white.variance[cell] + black.variance[cell]);
-            if (!(contrast > kMinContrastSigmas * noise)) continue;
+            if (!(contrast > kMinContrastSigmas * noise)) {
+                out.flags[cell].set(Flag::BelowNoise);
+                continue;
+            }
 
             const double fw = certifiedWhite.f[band];
             const double fb = certifiedBlack.f[band];
@@ -133,26 +186,45 @@ Calibrated calibrate(const CellSignal& sample,
             u[WhiteCommon] = std::abs(q * fw) * references.white.certificate().uCommon;
             u[WhitePerDirection] = std::abs(q * fw) * references.white.certificate().uPerDirection;
             u[BlackCommon] = std::abs((1 - q) * fb) * references.black.certificate().uCommon;
-            u[LedDrift] =
-                rig.ledDrift * std::abs(gain) *
-                std::hypot(
-                    sample.signal[cell], q * white.signal[cell], (1 - q) * black.signal[cell]);
+            const double byLight = std::abs(gain) * std::hypot(sample.signal[cell],
+                                                               q * white.signal[cell],
+                                                               (1 - q) * black.signal[cell]);
+            u[ExposureRatio] = rig.exposureRatio * byLight;
+            u[NonLinearity] = rig.linearity * byLight;
+            u[LedDrift] = rig.ledDrift * byLight;
+            out.uRandom[cell] = quadrature(u, SampleNoise, WhiteCommon);
         }
     });
-    // The slope needs the neighbours' f.
+    // The slope needs the neighbours' f and noise.
+    const Measurement measurement{sample, references, wi, band, rig};
+    std::vector<double> uRandom = out.uRandom;
+    std::atomic<std::size_t> propagated = 0;
     parallelFor(sample.size(), [&](IndexRange cells) {
         for (std::size_t cell = cells.begin; cell < cells.end; ++cell) {
             if (!out.present(cell)) continue;
             Contributions& u = contributions[cell];
-            u[Geometry] = slope(out.f, out.flags, cell) * rig.angle(CellGrid::centre(cell)).value();
-            out.uRandom[cell] = quadrature(u, SampleNoise, WhiteCommon);
+            CellInputs inputs = measurement.inputsOf(cell, out);
+            u[Geometry] = inputs.shape.slope(out.f[cell]) * inputs.uAngle;
             out.uSystematic[cell] = quadrature(u, WhiteCommon, ComponentCount);
-            if (std::abs(out.f[cell]) < 2 * out.uRandom[cell]) {
-                out.flags[cell].set(Flag::BelowNoise);
-            }
+            const double total = std::hypot(out.uRandom[cell], out.uSystematic[cell]);
+            if (monteCarlo.draws == 0 && !firstOrderFails(inputs, total)) continue;
+            inputs.uElse = quadrature(u, LedDrift + 1, ComponentCount);
+            const int draws = monteCarlo.draws > 0 ? monteCarlo.draws : kAutomaticDraws;
+            const PropagatedUncertainty better = propagate(inputs, draws, monteCarlo.seed + cell);
+            uRandom[cell] = better.random;
+            out.uSystematic[cell] = better.systematic;
+            ++propagated;
         }
     });
+    out.uRandom = std::move(uRandom);
+    for (std::size_t cell = 0; cell < out.size(); ++cell) {
+        if (out.present(cell) && std::abs(out.f[cell]) < 2 * out.uRandom[cell]) {
+            out.flags[cell].set(Flag::BelowNoise);
+        }
+    }
+    result.propagated = propagated;
     result.budget = summary(out, contributions);
+    addSizes(result.budget, out, sample, references, rig);
     return result;
 }
 

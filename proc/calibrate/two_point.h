@@ -8,15 +8,23 @@
 // independent, of the size d that the rig is known for, and a signal is as wrong as its light:
 //     u = d |df/dS| sqrt(S^2 + (q S_w)^2 + ((1 - q) S_b)^2),
 // sqrt(2) d f where sample and white are far brighter than black; all cells of a state share it.
+// What is left of the sensor's non-linearity and of the exposures' ratios changes with brightness:
+// each capture has a relative error of its own of these, and they go in as drift does.
+//
+// Where first order is wrong (monte_carlo.h), and in all cells on request, the uncertainties are
+// those of a propagation of distributions instead; f stays.
 //
 // A cell that is missing in any of the three is missing here, with the flags of all. Where white is
-// not brighter than black by 5 sigma the cell is missing: nothing can be said there. Negative f
-// survives; |f| < 2 u_random is flagged BelowNoise.
+// not brighter than black by 5 sigma the cell is missing and BelowNoise: nothing can be said there.
+// Negative f survives; |f| < 2 u_random is flagged BelowNoise.
 
+#include <cstddef>
 #include <functional>
+#include <optional>
 
 #include "proc/calibrate/budget.h"
 #include "proc/calibrate/cell_samples.h"
+#include "proc/calibrate/monte_carlo.h"
 #include "proc/calibrate/reference.h"
 #include "proc/optics/binning.h"
 
@@ -36,12 +44,16 @@ using AngleUncertainty = std::function<Radians(const Direction&)>;
 /// What the rig adds to the uncertainty by itself.
 struct RigUncertainty {
     const AngleUncertainty& angle;
-    double ledDrift = 0;  ///< d: relative standard size, k = 1
+    double ledDrift = 0;                   ///< d: relative standard size, k = 1
+    double exposureRatio = 0;              ///< relative, k = 1: of an effective exposure time
+    double linearity = 0;                  ///< relative, k = 1: what is left of the non-linearity
+    std::optional<double> angleFreedom{};  ///< degrees of freedom of `angle`
 };
 
 struct Calibrated {
     CellSamples samples;
     Budget budget;
+    std::size_t propagated = 0;  ///< cells whose uncertainty is that of Monte Carlo
 };
 
 /// All signals run over CellGrid. `wi` has phi = 0.
@@ -49,6 +61,7 @@ struct Calibrated {
                                    const References& references,
                                    const Direction& wi,
                                    Band band,
-                                   const RigUncertainty& rig);
+                                   const RigUncertainty& rig,
+                                   const MonteCarlo& monteCarlo = {});
 
 }  // namespace gonio::proc

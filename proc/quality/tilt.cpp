@@ -9,6 +9,7 @@
 
 #include "proc/models/ggx.h"
 #include "proc/optics/cell_grid.h"
+#include "proc/quality/cell_points.h"
 #include "proc/solve/least_squares.h"
 
 namespace gonio::proc {
@@ -27,13 +28,17 @@ constexpr double kModelError = 0.02;
 constexpr double kSeated = 0.02;
 constexpr double kSteepest = 0.25;  // tan of the largest tilt that is looked for
 constexpr int kMostIterations = 50;
+constexpr double kGoodFit = 0.1;  // of what a lobe may be off: no other is looked for
 // There is a lobe where it explains so much of chi-square.
 constexpr double kLobeChiSquare = 50, kLobeGain = 1.05;
 constexpr double kLeastShare = 0.3;  // of f in the mirror direction, under half of the LEDs
+// A narrower lobe is another in the middle of a cell than over all of it, by more than 1 %.
+constexpr double kNarrowLobe = 0.06;
 
-/// One measured cell, the bands' mean.
+/// One measured cell, the mean of the bands that were measured.
 struct Sighting {
     Direction wi, wo;
+    std::size_t cell = 0;
     double f = 0, u = 0;
     double sigma = 0;  ///< how far a fitted f may be off
     bool inLobe = false;
@@ -68,13 +73,20 @@ Parts partsOf(const Shape& shape, const Eigen::Matrix3d& turn, const LightView& 
 
 std::optional<Sighting> sightingAt(const LedTable& led, std::size_t cell) {
     Sighting one{.wi = Direction::fromSpherical(led.incidence, Radians(0)),
-                 .wo = CellGrid::centre(cell)};
+                 .wo = CellGrid::centre(cell),
+                 .cell = cell};
     if (one.wo.theta() > kOutermost) return std::nullopt;
+    int bands = 0;
     for (const CellSamples& band : led.bands) {
-        if (band.size() == 0 || !band.present(cell)) return std::nullopt;
-        one.f += band.f[cell] / static_cast<double>(kBands.size());
-        one.u = std::hypot(one.u, band.uRandom[cell] / static_cast<double>(kBands.size()));
+        if (band.size() == 0) continue;
+        if (!band.present(cell)) return std::nullopt;
+        one.f += band.f[cell];
+        one.u = std::hypot(one.u, band.uRandom[cell]);
+        ++bands;
     }
+    if (bands == 0) return std::nullopt;
+    one.f /= bands;
+    one.u /= bands;
     return one;
 }
 
@@ -116,15 +128,40 @@ Sightings sightingsOf(const LedTable& led) {
 
 Direction normalOf(double x, double y) { return *Direction::fromVector({x, y, 1}); }
 
+/// The mean over the cell.
+Parts partsOver(const Shape& shape, const Eigen::Matrix3d& turn, const Sighting& one) {
+    const std::array<Direction, 4> points = pointsOver(one.cell);
+    Parts mean;
+    for (const Direction& wo : points) {
+        const Parts parts = partsOf(shape, turn, {one.wi, wo});
+        mean.floor += parts.floor / points.size();
+        mean.lobe += parts.lobe / points.size();
+    }
+    return mean;
+}
+
+/// Floor and lobe as each sighting shows them.
+std::vector<Parts> partsOf(std::span<const Sighting> sightings,
+                           const Shape& shape,
+                           const Eigen::Matrix3d& turn) {
+    std::vector<Parts> parts;
+    parts.reserve(sightings.size());
+    for (const Sighting& one : sightings) {
+        parts.push_back(shape.alpha < kNarrowLobe ? partsOver(shape, turn, one)
+                                                  : partsOf(shape, turn, {one.wi, one.wo}));
+    }
+    return parts;
+}
+
 /// How strong floor and lobe are under one LED: linear least squares.
 TiltLobe strengths(std::span<const Sighting> sightings,
                    const Shape& shape,
-                   const Eigen::Matrix3d& turn) {
+                   std::span<const Parts> parts) {
     Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
     Eigen::Vector2d right = Eigen::Vector2d::Zero();
-    for (const Sighting& one : sightings) {
-        const Parts parts = partsOf(shape, turn, {one.wi, one.wo});
-        const Eigen::Vector2d row = Eigen::Vector2d(parts.floor, parts.lobe) / one.sigma;
+    for (std::size_t i = 0; i < sightings.size(); ++i) {
+        const Sighting& one = sightings[i];
+        const Eigen::Vector2d row = Eigen::Vector2d(parts[i].floor, parts[i].lobe) / one.sigma;
         normal += row * row.transpose();
         right += row * (one.f / one.sigma);
     }
@@ -135,9 +172,18 @@ TiltLobe strengths(std::span<const Sighting> sightings,
             .f0 = shape.f0};
 }
 
-double shownBy(const TiltLobe& lobe, const Eigen::Matrix3d& turn, const LightView& pair) {
-    const Parts parts = partsOf({lobe.alpha, lobe.f0}, turn, pair);
+TiltLobe strengths(std::span<const Sighting> sightings,
+                   const Shape& shape,
+                   const Eigen::Matrix3d& turn) {
+    return strengths(sightings, shape, partsOf(sightings, shape, turn));
+}
+
+double shownBy(const TiltLobe& lobe, const Parts& parts) {
     return lobe.diffuse * parts.floor + lobe.specular * parts.lobe;
+}
+
+double shownBy(const TiltLobe& lobe, const Eigen::Matrix3d& turn, const LightView& pair) {
+    return shownBy(lobe, partsOf({lobe.alpha, lobe.f0}, turn, pair));
 }
 
 /// (measured - fitted) over what that may be, of one LED.
@@ -145,11 +191,10 @@ void residualsOf(std::span<const Sighting> sightings,
                  const Shape& shape,
                  const Direction& normal,
                  std::span<double> out) {
-    const Eigen::Matrix3d turn = toSurface(normal);
-    const TiltLobe lobe = strengths(sightings, shape, turn);
+    const std::vector<Parts> parts = partsOf(sightings, shape, toSurface(normal));
+    const TiltLobe lobe = strengths(sightings, shape, parts);
     for (std::size_t i = 0; i < sightings.size(); ++i) {
-        const Sighting& one = sightings[i];
-        out[i] = (one.f - shownBy(lobe, turn, {one.wi, one.wo})) / one.sigma;
+        out[i] = (sightings[i].f - shownBy(lobe, parts[i])) / sightings[i].sigma;
     }
 }
 
@@ -209,6 +254,7 @@ std::optional<FitReport> bestJoint(const std::vector<Sightings>& leds) {
     for (double alpha : {0.05, 0.2, 0.5}) {
         FitReport report = fitJoint(leds, alpha);
         if (report.ok() && (!best || report.rms < best->rms)) best = std::move(report);
+        if (best && best->rms < kGoodFit) break;
     }
     const double count = static_cast<double>(countOf(leds));
     const double left = best ? best->rms * best->rms * count : count;
@@ -221,29 +267,34 @@ std::optional<FitReport> bestJoint(const std::vector<Sightings>& leds) {
 double misfitOf(std::span<const Sighting> sightings,
                 const TiltLobe& lobe,
                 const Direction& normal) {
-    const Eigen::Matrix3d turn = toSurface(normal);
+    const std::vector<Parts> parts = partsOf(sightings, {lobe.alpha, lobe.f0}, toSurface(normal));
     double squares = 0;
     int count = 0;
-    for (const Sighting& one : sightings) {
+    for (std::size_t i = 0; i < sightings.size(); ++i) {
+        const Sighting& one = sightings[i];
         if (!one.inLobe || !(one.f > 0)) continue;
-        const double off = one.f - shownBy(lobe, turn, {one.wi, one.wo});
+        const double off = one.f - shownBy(lobe, parts[i]);
         squares += (off * off - one.u * one.u) / (one.f * one.f);
         ++count;
     }
     return std::sqrt(std::max(0.0, squares) / std::max(1, count));
 }
 
-/// Of either axis, by the scatter of the cells about the fit.
+/// Of either axis, by how far the cells really scatter about the fit.
 Radians uFitOf(const FitReport& report) {
-    return Radians(std::max(1.0, report.rms) *
+    return Radians(report.rms *
                    std::sqrt(std::max(report.covariance(0, 0), report.covariance(1, 1))));
 }
 
 /// What a misfit may do to it.
 Radians uMisfitOf(double misfit, double alpha) { return Radians(misfit * alpha / 4); }
 
-Radians together(Radians a, Radians b, Radians c) {
-    return Radians(std::hypot(a.value(), b.value(), c.value()));
+/// With the lens map's part.
+Normal uncertain(const Direction& normal, Radians uFit, Radians uMisfit, Radians uAngle) {
+    const double seen = std::hypot(uFit.value(), uMisfit.value());
+    return {.direction = normal,
+            .u = Radians(std::hypot(seen, uAngle.value())),
+            .uSeen = Radians(seen)};
 }
 
 /// One LED's own normal, and of its uncertainty what is the LED's alone: the lens map moves those
@@ -274,9 +325,9 @@ std::optional<OwnNormal> normalSeenBy(std::span<const Sighting> sightings,
     const double misfit = misfitOf(sightings, strengths(sightings, shape, toSurface(own)), own);
     const Radians uFit = uFitOf(report);
     const Radians uMisfit = uMisfitOf(misfit, shape.alpha);
-    const Radians u = together(uFit, uMisfit, uAngle);
-    if (u.value() > kSeated) return std::nullopt;
-    return OwnNormal{.normal = {own, u}, .uFit = uFit, .uMisfit = uMisfit};
+    const Normal normal = uncertain(own, uFit, uMisfit, uAngle);
+    if (normal.u.value() > kSeated) return std::nullopt;
+    return OwnNormal{.normal = normal, .uFit = uFit, .uMisfit = uMisfit};
 }
 
 /// A lobe that stands out of its floor: less is the floor's own departure from Lambert's.
@@ -309,7 +360,7 @@ Radians wavinessOf(std::span<const std::optional<OwnNormal>> leds, const Directi
 /// There is a lobe, and how it lies is not to be seen.
 TiltEstimate undetermined(TiltEstimate estimate) {
     estimate.determined = false;
-    estimate.joint = {Direction(), Radians(kSeated)};
+    estimate.joint = {Direction(), Radians(kSeated), Radians(kSeated)};
     estimate.leds.assign(estimate.lobes.size(), std::nullopt);
     return estimate;
 }
@@ -326,18 +377,19 @@ std::optional<TiltEstimate> estimateTilt(const SampleSet& sample, Radians uAngle
     const std::optional<FitReport> report = bestJoint(leds);
     if (!report) return std::nullopt;
     const Shape shape = shapeOf(report->params);
-    TiltEstimate estimate{.joint = {normalOf(report->params[0], report->params[1]), {}},
+    TiltEstimate estimate{.joint = {normalOf(report->params[0], report->params[1]), {}, {}},
                           .leds = {},
                           .lobes = {},
                           .waviness = {}};
-    const Direction& normal = estimate.joint.direction;
+    const Direction normal = estimate.joint.direction;
     for (const Sightings& led : leds) {
         estimate.lobes.push_back(strengths(led, shape, toSurface(normal)));
         const double misfit = misfitOf(led, estimate.lobes.back(), normal);
         estimate.misfit = std::max(estimate.misfit, misfit);
     }
     if (!standsOut(sample, estimate)) return std::nullopt;
-    estimate.joint.u = together(uFitOf(*report), uMisfitOf(estimate.misfit, shape.alpha), uAngle);
+    estimate.joint =
+        uncertain(normal, uFitOf(*report), uMisfitOf(estimate.misfit, shape.alpha), uAngle);
     if (!(estimate.joint.u.value() <= kSeated)) return undetermined(std::move(estimate));
     std::vector<std::optional<OwnNormal>> own;
     for (const Sightings& led : leds) {

@@ -37,6 +37,9 @@ struct TiltLobe {
 struct Normal {
     Direction direction;
     Radians u;
+    /// Without the lens map's part: against where the lobes were seen. What f is off by on a flank
+    /// is this and the direction of the cell, which is in the budget by itself.
+    Radians uSeen;
     [[nodiscard]] Radians tilt() const { return direction.theta(); }
 };
 

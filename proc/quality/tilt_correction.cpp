@@ -1,12 +1,14 @@
 #include "proc/quality/tilt_correction.h"
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
 #include "proc/core/parallel.h"
 #include "proc/optics/cell_grid.h"
+#include "proc/quality/cell_points.h"
 #include "proc/table/sample_lookup.h"
 
 namespace gonio::proc {
@@ -39,6 +41,15 @@ void forEachCell(SampleSet& sample, const TiltEstimate& estimate, const Change& 
     }
 }
 
+/// The mean over a cell of what the lobe shows there: in the middle of a cell a lobe of a few
+/// degrees is another than over all of it.
+double overCell(const Place& place, const Direction& normal) {
+    const std::array<Direction, 4> points = pointsOver(place.cell);
+    double sum = 0;
+    for (const Direction& wo : points) sum += tiltedLobe(place.lobe, normal, {place.pair.in, wo});
+    return sum / points.size();
+}
+
 void forget(CellSamples& cells, std::size_t cell) {
     cells.f[cell] = cells.uRandom[cell] = cells.uSystematic[cell] = std::nan("");
     cells.nEff[cell] = 0;
@@ -49,7 +60,7 @@ void forget(CellSamples& cells, std::size_t cell) {
 /// mean square angle is that about both axes together.
 Radians uOfOneLed(const TiltEstimate& estimate) {
     return Radians(
-        std::hypot(estimate.joint.u.value(), estimate.waviness.value() / std::numbers::sqrt2));
+        std::hypot(estimate.joint.uSeen.value(), estimate.waviness.value() / std::numbers::sqrt2));
 }
 
 /// Adds |d f / d tilt| u, about both axes together.
@@ -69,7 +80,7 @@ void widen(CellSamples& cells, const Place& place, Radians u) {
 /// Measured over fitted, cell by cell.
 SampleSet quotients(SampleSet sample, const TiltEstimate& estimate) {
     forEachCell(sample, estimate, [&](CellSamples& cells, const Place& place) {
-        const double fitted = tiltedLobe(place.lobe, estimate.joint.direction, place.pair);
+        const double fitted = overCell(place, estimate.joint.direction);
         if (!(fitted > 0)) return forget(cells, place.cell);
         cells.f[place.cell] /= fitted;
         cells.uRandom[place.cell] /= fitted;
@@ -99,7 +110,7 @@ SampleSet tiltCorrected(const SampleSet& sample, const TiltEstimate& estimate) {
         const Answer answer = at && at->aboveHorizon() ? smooth.answer({place.pair.in, *at})
                                                        : Answer::none({}, Source::Measured);
         if (!std::isfinite(answer.f[place.band])) return forget(cells, place.cell);
-        const double flat = tiltedLobe(place.lobe, Direction(), place.pair);
+        const double flat = overCell(place, Direction());
         cells.f[place.cell] = answer.f[place.band] * flat;
         cells.uRandom[place.cell] = (*answer.uRandom)[place.band] * flat;
         cells.uSystematic[place.cell] = (*answer.uSystematic)[place.band] * flat;

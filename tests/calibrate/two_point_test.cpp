@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
+#include <string>
 
 namespace gonio::proc {
 namespace {
@@ -208,19 +210,98 @@ TEST(TwoPoint, AMissingReferenceCellIsMissing) {
 TEST(TwoPoint, BudgetNamesEveryComponent) {
     const Tiles tiles;
     const Budget budget = tiles(signalOf(slanted), 0.1_deg, 0.002).budget;
-    ASSERT_EQ(budget.size(), 8U);
+    ASSERT_EQ(budget.size(), 10U);
     for (const BudgetComponent& component : budget) {
         EXPECT_TRUE(component.type == 'A' || component.type == 'B');
         EXPECT_FALSE(name(component.correlation).empty());
         if (component.name == "white reference, common") {
             EXPECT_NEAR(component.medianRelative, 0.005, 5e-5);
             EXPECT_EQ(component.correlation, Correlation::Common);
-        } else if (component.name == "white reference, per direction") {
-            EXPECT_EQ(component.medianRelative, 0);
+            EXPECT_EQ(component.size, 0.005);
+            EXPECT_NEAR(component.sensitivity(), 1, 0.01);
+        } else if (component.size == 0) {  // not known of these tiles and this rig
+            EXPECT_EQ(component.medianRelative, 0) << component.name;
+            EXPECT_EQ(component.sensitivity(), 0) << component.name;
         } else {
             EXPECT_GT(component.medianRelative, 0) << component.name;
         }
     }
+}
+
+TEST(TwoPoint, BudgetLineIsSensitivityTimesSize) {
+    const Tiles tiles;
+    const AngleUncertainty angle = [](const Direction&) { return 0.1_deg; };
+    const CellSignal sample = signalOf([](const Direction&) { return 0.3; });
+    const Calibrated out =
+        calibrate(sample,
+                  {tiles.whiteSignal, tiles.blackSignal, tiles.white, tiles.black},
+                  kLight,
+                  Band::G,
+                  {.angle = angle, .exposureRatio = 0.002, .linearity = 0.003, .angleFreedom = 58});
+    const auto line = [&](const std::string& name) {
+        return *std::find_if(out.budget.begin(), out.budget.end(), [&](const auto& component) {
+            return component.name == name;
+        });
+    };
+    // As drift: once for the sample and once for white; black and stray light are 1/500 of it.
+    EXPECT_NEAR(line("exposure ratio").sensitivity(), std::sqrt(2), 0.01);
+    EXPECT_NEAR(line("linearity").medianRelative, std::sqrt(2) * 0.003, 3e-5);
+    EXPECT_NEAR(
+        line("black reference").sensitivity(), 0.001 / kPi / 0.3 * (1 - 0.3 * kPi / 0.98), 1e-5);
+    EXPECT_NEAR(line("noise of the sample's frames").size, 1e-3, 1e-6);
+    EXPECT_NEAR(line("noise of the sample's frames").sensitivity(), 1, 0.01);
+    EXPECT_NEAR(line("direction of the cell (lens map)").size, 0.1, 1e-12);
+    EXPECT_EQ(line("direction of the cell (lens map)").unit, "degree");
+    EXPECT_EQ(line("direction of the cell (lens map)").freedom, 58);
+    EXPECT_FALSE(line("linearity").freedom);
+}
+
+TEST(TwoPoint, MonteCarloOnRequestAgreesWithFirstOrder) {
+    const Tiles tiles;
+    const AngleUncertainty angle = [](const Direction&) { return 0.05_deg; };
+    const CellSignal sample = signalOf(slanted);
+    const auto with = [&](const MonteCarlo& monteCarlo) {
+        return calibrate(sample,
+                         {tiles.whiteSignal, tiles.blackSignal, tiles.white, tiles.black},
+                         kLight,
+                         Band::G,
+                         {.angle = angle, .ledDrift = 0.002},
+                         monteCarlo);
+    };
+    const Calibrated first = with({}), drawn = with({.draws = 400, .seed = 3});
+    EXPECT_EQ(first.propagated, 0U);
+    double sum = 0;
+    for (std::size_t cell = 0; cell < CellGrid::count(); ++cell) {
+        if (!first.samples.present(cell)) continue;
+        ASSERT_EQ(first.samples.f[cell], drawn.samples.f[cell]);
+        const double ratio = drawn.samples.at(cell).u() / first.samples.at(cell).u();
+        ASSERT_NEAR(ratio, 1, 0.3);  // 4.8 % of scatter in one cell, six of these
+        sum += ratio;
+    }
+    EXPECT_NEAR(sum / static_cast<double>(drawn.propagated), 1, 0.01);
+}
+
+TEST(TwoPoint, MonteCarloTakesOverOnASteepFlankByItself) {
+    // 2 per degree over four degrees, even beside them.
+    const auto flank = [](const Direction& wo) {
+        return 0.1 * std::exp(2 * std::clamp(wo.theta().degrees() - 40.5, -4.0, 0.0));
+    };
+    const Tiles tiles;
+    const Calibrated out = tiles(signalOf(flank), 0.2_deg);
+    EXPECT_GT(out.propagated, 0U);
+    const std::size_t steep = *CellGrid::cellAt(Direction::fromSpherical(38.5_deg, 10_deg));
+    const std::size_t even = *CellGrid::cellAt(Direction::fromSpherical(60.5_deg, 10_deg));
+    // ln f is off by 0.4 sigma: 95 % of exp(0.4 z) lie within 0.931 of 1. Six times the 2.1 % by
+    // which 2000 draws scatter.
+    EXPECT_NEAR(out.samples.uSystematic[steep] / out.samples.f[steep], 0.931 / 1.96, 0.06);
+    EXPECT_LT(out.samples.uSystematic[even] / out.samples.f[even], 0.01);
+}
+
+TEST(TwoPoint, WithoutContrastItIsFlagged) {
+    Tiles tiles;
+    tiles.whiteSignal = tiles.blackSignal;
+    const Calibrated out = tiles(signalOf(slanted));
+    EXPECT_TRUE(out.samples.flags[100].has(Flag::BelowNoise));
 }
 
 }  // namespace

@@ -260,7 +260,7 @@ TEST(TiltCorrection, UncertaintyOfTheTiltIsTheSlopeOfTheLobe) {
     const auto surface = model("ggx,alpha=0.1,f0=0.5");
     SampleSet flat = seen(*surface, Direction());
     const TiltEstimate estimate{
-        .joint = {Direction(), 0.1_deg},
+        .joint = {.direction = Direction(), .u = 0.1_deg, .uSeen = 0.1_deg},
         .leds = {},
         .lobes = std::vector<TiltLobe>(4, {.diffuse = 0, .alpha = 0.1, .f0 = 0.5}),
         .waviness = {}};
