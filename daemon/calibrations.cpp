@@ -5,6 +5,7 @@
 #include <ctime>
 #include <utility>
 
+#include "proc/core/log.h"
 #include "proc/core/number_text.h"
 #include "proc/formats/file_bytes.h"
 #include "proc/formats/graw_exr.h"
@@ -29,9 +30,10 @@ std::string runAgain(const CalibrationRecord& calibration) {
 Result<CalibrationRecord> numbered(Store& store, std::string_view text, const std::string& rig) {
     const auto number = parseInteger(text);
     if (!number || *number < 1) {
-        return Error{ErrorKind::Usage,
-                     "calibration '" + std::string(text) +
-                         "': wanted a number, or three such as 10+11+12; see gonio calibrations"};
+        return Error{
+            ErrorKind::Usage,
+            "calibration '" + std::string(text) +
+                "': wanted a number, or three such as 10+11+12, or four; see gonio calibrations"};
     }
     auto found = store.calibration(*number);
     if (!found) return found.error();
@@ -44,14 +46,15 @@ Result<CalibrationRecord> numbered(Store& store, std::string_view text, const st
 CalibrationRecord* placeOf(CalibrationSet& set, const std::string& kind) {
     if (kind == "mirror") return &set.mirror;
     if (kind == "black") return &set.black;
-    return kind == "white" ? &set.white : nullptr;
+    if (kind == "white") return &set.white;
+    return kind == "zero" ? &set.zero.emplace() : nullptr;
 }
 
 }  // namespace
 
 std::string CalibrationSet::id() const {
     return std::to_string(mirror.id) + "+" + std::to_string(black.id) + "+" +
-           std::to_string(white.id);
+           std::to_string(white.id) + (zero ? "+" + std::to_string(zero->id) : "");
 }
 
 Result<CalibrationRecord> newestOf(Store& store, const std::string& rig, const std::string& kind) {
@@ -70,6 +73,9 @@ Result<CalibrationSet> newestSet(Store& store, const std::string& rig) {
         if (!newest) return newest.error();
         *placeOf(set, kind) = std::move(*newest);
     }
+    Result<std::optional<CalibrationRecord>> zero = store.newestCalibration(rig, "zero");
+    if (!zero) return zero.error();
+    set.zero = std::move(*zero);
     return set;
 }
 
@@ -77,6 +83,7 @@ Result<CalibrationSet> parseSet(Store& store,
                                 std::string_view text,
                                 const CalibrationSet& otherwise) {
     CalibrationSet set = otherwise;
+    if (text.find('+') != std::string_view::npos) set.zero.reset();  // it is said, or not there
     std::string_view rest = text;
     int count = 0;
     for (bool more = true; more; ++count) {
@@ -88,10 +95,11 @@ Result<CalibrationSet> parseSet(Store& store,
         if (more) rest.remove_prefix(plus + 1);
     }
     if (count == 1 || set.id() == text) return set;
-    return Error{
-        ErrorKind::Usage,
-        "calibration '" + std::string(text) +
-            "': wanted one number, or those of a mirror, a black and a white, in this order"};
+    return Error{ErrorKind::Usage,
+                 "calibration '" + std::string(text) +
+                     "': wanted one number, or those of a mirror, a black, a white and, where "
+                     "there is one, a "
+                     "zero, in this order"};
 }
 
 std::string whyNot(const CalibrationRecord& calibration,
@@ -122,6 +130,14 @@ std::string whyNot(const CalibrationRecord& calibration,
                runAgain(calibration);
     }
     return {};
+}
+
+void leaveOutStaleZero(CalibrationSet& set, const RigNow& now, const ValidityLimits& limits) {
+    if (!set.zero) return;
+    const std::string why = whyNot(*set.zero, now, limits);
+    if (why.empty()) return;
+    log::warning(why + "; measured without it");
+    set.zero.reset();
 }
 
 Result<LensRecord> readLens(const CalibrationRecord& mirror) {
@@ -176,7 +192,23 @@ Result<LoadedSet> loadSet(Store& store, const CalibrationSet& set) {
     if (!black) return black.error();
     Result<ReferenceRecord> white = readReference(store, set.white, set.mirror, *lens);
     if (!white) return white.error();
-    return LoadedSet{std::move(*lens), std::move(*black), std::move(*white)};
+    LoadedSet loaded{std::move(*lens), std::move(*black), std::move(*white), std::nullopt};
+    if (!set.zero) return loaded;
+    Result<ReferenceRecord> zero = readReference(store, *set.zero, set.mirror, loaded.lens);
+    if (!zero) return zero.error();
+    loaded.zero = std::move(*zero);
+    return loaded;
+}
+
+RigReferences referencesOf(const LoadedSet& loaded,
+                           const References& certified,
+                           const RigProfile& profile) {
+    return {.lens = loaded.lens,
+            .white = loaded.white,
+            .black = loaded.black,
+            .certified = certified,
+            .profile = profile,
+            .zero = loaded.zero ? &*loaded.zero : nullptr};
 }
 
 }  // namespace gonio::daemon

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "daemon/alongside.h"
+#include "daemon/black_check.h"
 #include "daemon/gathering.h"
 #include "daemon/sample_pose.h"
 #include "proc/core/median.h"
@@ -159,10 +160,7 @@ proc::SampleSet asIfFlat(const PlacementSignals& signals,
             const std::size_t b = index(band);
             proc::Calibrated calibrated =
                 proc::calibrate(signals[led][b],
-                                {.whiteSignal = references.white.signals[led][b],
-                                 .blackSignal = references.black.signals[led][b],
-                                 .white = *references.certified.white,
-                                 .black = *references.certified.black},
+                                referencesOf(references, {static_cast<int>(led), band}),
                                 lightAt(ledAngles[led]),
                                 band,
                                 {.angle = uAngle, .ledDrift = references.profile.ledDrift});
@@ -227,6 +225,32 @@ Result<void> checkWhite(const PlacementSignals& white, const PlacementSignals& b
     return {};
 }
 
+Result<void> checkZero(const PlacementSignals& zero, const PlacementSignals& black) {
+    for (std::size_t led = 0; led < zero.size(); ++led) {
+        for (Band band : kBands) {
+            if (medianSignal(zero[led][index(band)]) < medianSignal(black[led][index(band)])) {
+                continue;
+            }
+            return Error{ErrorKind::Quality,
+                         stateName({static_cast<int>(led), band}) +
+                             ": the zero reference is not darker than the black; is the light trap "
+                             "placed, and clean?"};
+        }
+    }
+    return {};
+}
+
+proc::References referencesOf(const RigReferences& references, State state) {
+    const auto led = static_cast<std::size_t>(state.led);
+    const std::size_t b = index(state.band);
+    const bool trap = references.zero != nullptr;
+    const ReferenceRecord& lower = trap ? *references.zero : references.black;
+    return {.whiteSignal = references.white.signals[led][b],
+            .blackSignal = lower.signals[led][b],
+            .white = *references.certified.white,
+            .black = trap ? *references.certified.zero : *references.certified.black};
+}
+
 Result<proc::SampleSet> calibrateSample(const PlacementSignals& signals,
                                         const std::vector<Radians>& ledAngles,
                                         const RigReferences& references,
@@ -236,6 +260,7 @@ Result<proc::SampleSet> calibrateSample(const PlacementSignals& signals,
     const proc::AngleUncertainty uAngle = proc::DirectionUncertainty(references.lens.fit);
     proc::SampleSet set = asIfFlat(signals, ledAngles, references, uAngle);
     info.budgetJson = std::move(set.info.budgetJson);
+    noteBlackCheck(checkBlack(references, ledAngles), info);
     set.info = std::move(info);
     const Radians uLens = uAngle(Direction::fromSpherical(kTypicalView, Radians(0)));
     Result<proc::SampleSet> flat = referredToItsNormal(std::move(set), uLens, force);

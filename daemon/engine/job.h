@@ -19,6 +19,7 @@ enum class JobKind {
     CalibrateMirror,
     CalibrateBlack,
     CalibrateWhite,
+    CalibrateZero,
     VerifyWhite,
     Measure,
     Recalibrate  ///< of a stored sample: needs no rig

@@ -41,7 +41,7 @@ public:
           onRig_(bench.rig.link().clock()) {}
 
     Result<Json> calibrateMirror();
-    Result<Json> calibrateTile(bool white);
+    Result<Json> calibrateTile(const std::string& kind);
     Result<Json> verifyWhite();
     Result<Json> measure();
 
@@ -67,6 +67,7 @@ private:
     [[nodiscard]] Result<void> expectPlaced(const std::string& reference) const;
     Result<void> placeMirror(const proc::Wedge& wedge);
     [[nodiscard]] std::optional<double> celsius() const;
+    [[nodiscard]] RigNow rigNow() const;
     [[nodiscard]] Result<void> checkValidity(const CalibrationSet& set) const;
     [[nodiscard]] Result<void> fitsThisRig(const ReferenceRecord& reference) const;
     [[nodiscard]] Result<ReferenceRecord> reference(const std::string& kind) const;
@@ -172,12 +173,16 @@ std::optional<double> JobRun::celsius() const {
     return status ? driver::celsius(status->temperature[0]) : std::nullopt;
 }
 
+RigNow JobRun::rigNow() const {
+    return {.serial = serial_,
+            .profileHash = bench_.profile.hash,
+            .celsius = celsius(),
+            .dateUtc = bench_.utcNow()};
+}
+
 /// Quality error for calibrations that are no longer good.
 Result<void> JobRun::checkValidity(const CalibrationSet& set) const {
-    const RigNow now{.serial = serial_,
-                     .profileHash = bench_.profile.hash,
-                     .celsius = celsius(),
-                     .dateUtc = bench_.utcNow()};
+    const RigNow now = rigNow();
     for (const CalibrationRecord* one : {&set.mirror, &set.black, &set.white}) {
         const std::string why = whyNot(*one, now, bench_.profile.validity);
         if (why.empty()) continue;
@@ -222,22 +227,28 @@ Result<Json> JobRun::calibrateMirror() {
                 {"file", kept->file.string()}};
 }
 
-Result<Json> JobRun::calibrateTile(bool white) {
-    const std::string kind = white ? "white" : "black";
+/// A white is held against the black, and so is a light trap: it must be darker.
+Result<void> checkAgainst(const ReferenceRecord& black,
+                          const PlacementSignals& signals,
+                          const std::string& kind) {
+    if (kind == "white") return checkWhite(signals, black.signals);
+    return kind == "zero" ? checkZero(signals, black.signals) : Result<void>();
+}
+
+Result<Json> JobRun::calibrateTile(const std::string& kind) {
+    const bool white = kind == "white";
     if (Result<void> placed = expectPlaced(kind); !placed) return placed.error();
     // Looked for before minutes go into what would be refused without it.
     const Result<ReferenceRecord> black =
-        white ? reference("black") : Result<ReferenceRecord>(ReferenceRecord{});
+        kind != "black" ? reference("black") : Result<ReferenceRecord>(ReferenceRecord{});
     if (!black) return black.error();
     Result<Captured> captured = capture(white ? kWhiteBracket : kBlackBracket, 2 * kDarkFrames);
     if (!captured) return captured.error();
     if (Result<void> steady = checkSteady(*captured, "calibrate " + kind + " again"); !steady) {
         return steady.error();
     }
-    if (white) {
-        if (Result<void> bright = checkWhite(captured->signals, black->signals); !bright) {
-            return bright.error();
-        }
+    if (Result<void> good = checkAgainst(*black, captured->signals, kind); !good) {
+        return good.error();
     }
     proc::SampleInfo about = info(kind);
     about.truthSpec.clear();
@@ -346,12 +357,14 @@ Result<SampleRecord> JobRun::keep(const std::string& name,
 }
 
 Result<Json> JobRun::measure() {
-    const Result<CalibrationSet> set = newestSet(bench_.store, serial_);
+    Result<CalibrationSet> set = newestSet(bench_.store, serial_);
     if (!set) return set.error();
     if (Result<void> good = checkValidity(*set); !good) return good.error();
+    leaveOutStaleZero(*set, rigNow(), bench_.profile.validity);
     const auto loaded = whileAlive([&] { return loadSet(bench_.store, *set); });
     if (!loaded) return loaded.error();
-    for (const ReferenceRecord* one : {&loaded->black, &loaded->white}) {
+    for (const ReferenceRecord* one :
+         {&loaded->black, &loaded->white, loaded->zero ? &*loaded->zero : &loaded->black}) {
         if (Result<void> fits = fitsThisRig(*one); !fits) return fits.error();
     }
     const Result<References> certified = loadReferences(bench_.profile);
@@ -366,17 +379,13 @@ Result<Json> JobRun::measure() {
     finish(about, *captured);
     proc::SampleSet sample;
     const std::vector<Radians> angles = bench_.rig.identify().ledAngles;
+    const RigReferences references = referencesOf(*loaded, *certified, bench_.profile);
     const auto workedOut = [&](bool force) -> Result<proc::SampleSet> {
         const Result<void> steady =
             checkSteady(*captured, "measure again, or measure with --force");
         if (!steady && !force) return steady.error();
         const Stopwatch calibrating(bench_.computer);
-        auto calibrated = calibrateSample(
-            captured->signals,
-            angles,
-            {loaded->lens, loaded->white, loaded->black, *certified, bench_.profile},
-            about,
-            force);
+        auto calibrated = calibrateSample(captured->signals, angles, references, about, force);
         if (calibrated) calibrated->info.computeSeconds += calibrating.elapsed().count();
         return calibrated;
     };
@@ -415,8 +424,9 @@ Result<Json> JobRun::measure() {
 Result<Json> run(JobRun& job, JobKind kind) {
     switch (kind) {
         case JobKind::CalibrateMirror: return job.calibrateMirror();
-        case JobKind::CalibrateBlack: return job.calibrateTile(false);
-        case JobKind::CalibrateWhite: return job.calibrateTile(true);
+        case JobKind::CalibrateBlack: return job.calibrateTile("black");
+        case JobKind::CalibrateWhite: return job.calibrateTile("white");
+        case JobKind::CalibrateZero: return job.calibrateTile("zero");
         case JobKind::VerifyWhite: return job.verifyWhite();
         case JobKind::Measure: return job.measure();
         case JobKind::Recalibrate: break;  // needs no rig

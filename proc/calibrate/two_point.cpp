@@ -14,35 +14,33 @@ namespace {
 
 constexpr double kMinContrastSigmas = 5;
 
-/// Absolute standard uncertainties of one cell, in 1/sr, in the order of kComponents.
+/// Absolute standard uncertainties of one cell, in 1/sr, in the order of components().
 enum Component : std::size_t {
     SampleNoise,
     WhiteNoise,
-    BlackNoise,
+    LowerNoise,
     WhiteCommon,
     WhitePerDirection,
-    BlackCommon,
+    LowerCommon,
     Geometry,
     LedDrift,
     ComponentCount
 };
 using Contributions = std::array<double, ComponentCount>;
 
-struct ComponentKind {
-    const char* name;
-    char type;
-    Correlation correlation;
-};
-constexpr std::array<ComponentKind, ComponentCount> kComponents{{
-    {"noise of the sample's frames", 'A', Correlation::PerCell},
-    {"noise of the white reference's frames", 'A', Correlation::PerCell},
-    {"noise of the black reference's frames", 'A', Correlation::PerCell},
-    {"white reference, common", 'B', Correlation::Common},
-    {"white reference, per direction", 'B', Correlation::PerCell},
-    {"black reference", 'B', Correlation::Common},
-    {"direction of the cell (lens map)", 'A', Correlation::PerState},
-    {"LED drift", 'B', Correlation::PerState},
-}};
+/// The components without their sizes; `lower`: "black" or "zero".
+Budget components(const std::string& lower) {
+    return {
+        {"noise of the sample's frames", 'A', Correlation::PerCell},
+        {"noise of the white reference's frames", 'A', Correlation::PerCell},
+        {"noise of the " + lower + " reference's frames", 'A', Correlation::PerCell},
+        {"white reference, common", 'B', Correlation::Common},
+        {"white reference, per direction", 'B', Correlation::PerCell},
+        {lower + " reference", 'B', Correlation::Common},
+        {"direction of the cell (lens map)", 'A', Correlation::PerState},
+        {"LED drift", 'B', Correlation::PerState},
+    };
+}
 
 double quadrature(const Contributions& u, std::size_t first, std::size_t behind) {
     double sum = 0;
@@ -74,18 +72,17 @@ double slope(const std::vector<double>& f, const std::vector<Flags>& flags, std:
                       difference(beside(-1), beside(1)));
 }
 
-Budget summary(const CellSamples& samples, const std::vector<Contributions>& contributions) {
-    Budget budget;
+Budget summary(const CellSamples& samples,
+               const std::vector<Contributions>& contributions,
+               const std::string& lower) {
+    Budget budget = components(lower);
     for (std::size_t i = 0; i < ComponentCount; ++i) {
         std::vector<double> relative;
         for (std::size_t cell = 0; cell < samples.size(); ++cell) {
             if (!samples.present(cell) || samples.f[cell] == 0) continue;
             relative.push_back(contributions[cell][i] / std::abs(samples.f[cell]));
         }
-        budget.push_back({.name = kComponents[i].name,
-                          .type = kComponents[i].type,
-                          .correlation = kComponents[i].correlation,
-                          .medianRelative = median(std::move(relative))});
+        budget[i].medianRelative = median(std::move(relative));
     }
     return budget;
 }
@@ -129,10 +126,10 @@ Calibrated calibrate(const CellSignal& sample,
             Contributions& u = contributions[cell];
             u[SampleNoise] = std::abs(gain) * std::sqrt(sample.variance[cell]);
             u[WhiteNoise] = std::abs(gain * q) * std::sqrt(white.variance[cell]);
-            u[BlackNoise] = std::abs(gain * (1 - q)) * std::sqrt(black.variance[cell]);
+            u[LowerNoise] = std::abs(gain * (1 - q)) * std::sqrt(black.variance[cell]);
             u[WhiteCommon] = std::abs(q * fw) * references.white.certificate().uCommon;
             u[WhitePerDirection] = std::abs(q * fw) * references.white.certificate().uPerDirection;
-            u[BlackCommon] = std::abs((1 - q) * fb) * references.black.certificate().uCommon;
+            u[LowerCommon] = std::abs(1 - q) * (*certifiedBlack.uSystematic)[band];
             u[LedDrift] =
                 rig.ledDrift * std::abs(gain) *
                 std::hypot(
@@ -152,7 +149,7 @@ Calibrated calibrate(const CellSignal& sample,
             }
         }
     });
-    result.budget = summary(out, contributions);
+    result.budget = summary(out, contributions, references.black.certificate().name);
     return result;
 }
 

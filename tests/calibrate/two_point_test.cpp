@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -173,6 +174,43 @@ TEST(TwoPoint, GeometryIsSlopeTimesAngle) {
                                    std::pow(ideal.samples.uSystematic[cell], 2));
     // d(0.05 x)/dtheta = 0.05 cos(theta).
     EXPECT_NEAR(added, 0.05 * cos(30.5_deg) * u.value(), 1e-5);
+}
+
+/// White, and a light trap of this f, seen by the same rig.
+Calibrated withTrap(const CellSignal& sample, double whiteFactor, double trap) {
+    const ReferenceTable white = ReferenceTable::lambertian("white", 0.98, 0.005);
+    const ReferenceTable zero = ReferenceTable::lightTrap("zero", 1e-5);
+    const CellSignal whiteSignal =
+        signalOf([=](const Direction&) { return 0.98 / kPi * whiteFactor; });
+    const CellSignal zeroSignal = signalOf([=](const Direction&) { return trap; });
+    return calibrate(
+        sample, {whiteSignal, zeroSignal, white, zero}, kLight, Band::G, {[](const Direction&) {
+            return 0_deg;
+        }});
+}
+
+TEST(TwoPoint, AZeroReferenceTakesTheBlacksPlace) {
+    for (const double level : {1e-3, 1e-2, 0.3}) {
+        const CellSignal sample = signalOf([=](const Direction&) { return level; });
+        const CellSamples right = withTrap(sample, 1, 0).samples;
+        const CellSamples trapOff = withTrap(sample, 1, 1e-5).samples;
+        const CellSamples whiteOff = withTrap(sample, 1.005, 0).samples;
+        const CellSamples black = Tiles()(sample).samples;
+        const std::size_t cell = 5000;
+        EXPECT_NEAR(right.f[cell], level, 1e-12);
+        const double both =
+            std::hypot(trapOff.f[cell] - right.f[cell], whiteOff.f[cell] - right.f[cell]);
+        EXPECT_NEAR(both / right.uSystematic[cell], 1, 0.01) << level;
+        EXPECT_LE(right.uSystematic[cell], 1.001 * black.uSystematic[cell]) << level;
+    }
+    const Budget budget = withTrap(signalOf(slanted), 1, 0).budget;
+    const auto has = [&](const std::string& name) {
+        return std::any_of(
+            budget.begin(), budget.end(), [&](const auto& one) { return one.name == name; });
+    };
+    EXPECT_TRUE(has("zero reference"));
+    EXPECT_TRUE(has("noise of the zero reference's frames"));
+    EXPECT_FALSE(has("black reference"));
 }
 
 TEST(TwoPoint, NegativeValuesSurviveAndAreBelowNoise) {
