@@ -152,6 +152,7 @@ Result<PlacementSignals> binned(const std::filesystem::path& raw, const LensReco
     if (capture->states.empty()) return Error{ErrorKind::File, raw.string() + ": no states"};
     const Window& window = capture->states.front().merged.window;
     const proc::Binning binning(lens.fit.map, window, kField);
+    const proc::GlareFilter glare = glareFilterOf(lens, window);
     PlacementSignals signals;
     for (const proc::RawState& state : capture->states) {
         if (state.merged.window != window || state.merged.led < 0 ||
@@ -162,7 +163,7 @@ Result<PlacementSignals> binned(const std::filesystem::path& raw, const LensReco
         }
         const auto led = static_cast<std::size_t>(state.merged.led);
         if (signals.size() <= led) signals.resize(led + 1);
-        signals[led][index(state.merged.band)] = binning.bin(state.merged);
+        signals[led][index(state.merged.band)] = glare.bin(state.merged, binning);
     }
     return signals;
 }

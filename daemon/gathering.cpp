@@ -33,7 +33,7 @@ Result<Processed> Processing::operator()(State state, const std::vector<Frame>& 
     if (!merged) return merged.error();
     const std::optional<LightStep> step = lightStep(state, accumulator.sums(), *merged);
     Processed done{
-        .signal = binning.bin(*merged),
+        .signal = glare.bin(*merged, binning),
         .raw = {.merged = std::move(*merged), .bracket = describeBracket(frames, state.band)},
         .lightStep = step,
         .compute = {}};

@@ -9,6 +9,7 @@
 #include "daemon/alongside.h"
 #include "daemon/measurement.h"
 #include "proc/optics/binning.h"
+#include "proc/optics/glare.h"
 #include "proc/radiance/dark.h"
 #include "proc/radiance/merge.h"
 
@@ -26,6 +27,7 @@ struct Processed {
 struct Processing {
     const proc::DarkLibrary& darks;
     const proc::Binning& binning;
+    const proc::GlareFilter& glare;
     const proc::SensorNoise& noise;
     const Clock& clock;
 

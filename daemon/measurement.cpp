@@ -9,6 +9,7 @@
 #include "daemon/alongside.h"
 #include "daemon/black_check.h"
 #include "daemon/gathering.h"
+#include "daemon/glare_views.h"
 #include "daemon/sample_pose.h"
 #include "proc/core/median.h"
 #include "proc/core/number_text.h"
@@ -63,6 +64,7 @@ Result<LensRecord> takeLens(const Bench& bench, const PlaceMirror& place) {
     if (!darks) return darks.error();
     const std::vector<Radians> leds = bench.rig.identify().ledAngles;
     std::vector<proc::MirrorSpot> spots;
+    GlareViews glareViews(leds, bench);
     for (const proc::Wedge& wedge : proc::mirrorWedges()) {
         if (Result<void> dark = bench.rig.darken(); !dark) return dark.error();
         if (Result<void> placed = place(wedge); !placed) return placed.error();
@@ -84,14 +86,19 @@ Result<LensRecord> takeLens(const Bench& bench, const PlaceMirror& place) {
             if (!spot) return spot.error();
             spots.push_back({.wedge = wedge, .light = light, .at = spot->at, .sigma = spot->sigma});
         }
+        if (Result<void> on = glareViews.take(wedge, sequencer, *darks); !on) return on.error();
     }
     const proc::SensorPoint middle{window->x + 0.5 * window->size.width,
                                    window->y + 0.5 * window->size.height};
     Result<proc::LensFit> fit =
         proc::fitLens(spots, middle, kPixelsPerDegree, bench.profile.wedgeTolerance);
     if (!fit) return fit.error();
-    return LensRecord{
-        .fit = std::move(*fit), .spots = static_cast<int>(spots.size()), .dateUtc = {}};
+    const auto glare = alongside(bench.rig, [&] { return glareViews.spread(fit->map); });
+    if (!glare) return glare.error();
+    return LensRecord{.fit = std::move(*fit),
+                      .spots = static_cast<int>(spots.size()),
+                      .dateUtc = {},
+                      .glare = *glare};
 }
 
 Result<Captured> capturePlacement(const Bench& bench,
@@ -106,10 +113,14 @@ Result<Captured> capturePlacement(const Bench& bench,
     const Stopwatch preparing(bench.clock);
     const auto binning = alongside(bench.rig, [&] { return proc::Binning(lens, *window, kField); });
     if (!binning) return binning.error();
+    const proc::GlareFilter glare(bench.glare.value_or(proc::GlareSpread{}), lens, *window, kField);
     const Seconds prepared = preparing.elapsed();
-    Gathering gathering(
-        bench.rig,
-        {.darks = *darks, .binning = *binning, .noise = bench.profile.noise, .clock = bench.clock});
+    Gathering gathering(bench.rig,
+                        {.darks = *darks,
+                         .binning = *binning,
+                         .glare = glare,
+                         .noise = bench.profile.noise,
+                         .clock = bench.clock});
     const std::vector<State> states = sequencer.states();
     for (std::size_t i = 0; i < states.size(); ++i) {
         const auto then = i + 1 < states.size() ? std::optional(states[i + 1]) : std::nullopt;
@@ -191,7 +202,8 @@ Result<Window> configureWindow(driver::Rig& rig) {
 
 int mirrorSteps(const Bench& bench) {
     return static_cast<int>(bench.profile.exposures.size() +
-                            proc::mirrorWedges().size() * bench.rig.identify().ledAngles.size());
+                            proc::mirrorWedges().size() * bench.rig.identify().ledAngles.size()) +
+           GlareViews(bench.rig.identify().ledAngles, bench).count();
 }
 
 int placementSteps(const Bench& bench) {

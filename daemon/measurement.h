@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "daemon/light_watch.h"
@@ -31,6 +32,8 @@ struct Bench {
     std::function<Result<void>(const std::string&)> step;
     /// It goes on: every few seconds at least, between two steps.
     std::function<void()> alive = [] {};
+    /// The lens's glare, which signals are put right by; empty: none is taken off.
+    std::optional<proc::GlareSpread> glare{};
 };
 
 /// The window that is read: the square in the middle of the sensor.

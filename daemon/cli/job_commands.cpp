@@ -28,12 +28,19 @@ std::string nameOf(Reference reference) {
     return names[static_cast<int>(reference)];
 }
 
+/// The share that the lens spreads, k = 1.
+std::string glareLine(const Json& done) {
+    if (done.at("glare_share").is_null()) return "glare not known";
+    return "glare " + fixed(100 * done.at("glare_share").get<double>(), 3) + " % (u " +
+           fixed(100 * done.at("glare_u_share").get<double>(), 4) + " %)";
+}
+
 std::string calibratedLine(const Json& done, Reference reference) {
     if (reference == Reference::Mirror) {
         return "lens map of " + text(done, "rig") + ": " +
                std::to_string(done.at("spots").get<int>()) + " mirror spots, " +
                fixed(done.at("rms_px").get<double>(), 3) + " px rms, worst " +
-               fixed(done.at("worst_px").get<double>(), 3) + " px";
+               fixed(done.at("worst_px").get<double>(), 3) + " px; " + glareLine(done);
     }
     return nameOf(reference) + " reference of " + text(done, "rig") + ": " +
            std::to_string(done.at("states").get<int>()) + " states in " +

@@ -118,7 +118,8 @@ Result<Captured> JobRun::capture(const BracketPlan& plan, int darkFrames) {
     if (!mirror) return mirror.error();
     const Result<LensRecord> lens = readLens(*mirror);
     if (!lens) return lens.error();
-    const Bench bench = measuring();
+    Bench bench = measuring();
+    bench.glare = lens->glare;
     bench_.monitor.begin(placementSteps(bench));
     Result<Captured> captured = measurePlacement(bench, lens->fit.map, plan, darkFrames);
     if (!captured) return captured;
@@ -223,6 +224,8 @@ Result<Json> JobRun::calibrateMirror() {
                 {"spots", lens->spots},
                 {"rms_px", lens->fit.rmsPixels},
                 {"worst_px", lens->fit.worstPixels},
+                {"glare_share", lens->glare ? Json(lens->glare->share()) : Json(nullptr)},
+                {"glare_u_share", lens->glare ? Json(lens->glare->uShare) : Json(nullptr)},
                 {"rig_seconds", onRig_.elapsed().count()},
                 {"file", kept->file.string()}};
 }

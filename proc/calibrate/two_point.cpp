@@ -22,6 +22,7 @@ enum Component : std::size_t {
     WhiteCommon,
     WhitePerDirection,
     LowerCommon,
+    Glare,
     Geometry,
     LedDrift,
     ComponentCount
@@ -37,6 +38,7 @@ Budget components(const std::string& lower) {
         {"white reference, common", 'B', Correlation::Common},
         {"white reference, per direction", 'B', Correlation::PerCell},
         {lower + " reference", 'B', Correlation::Common},
+        {"glare", 'B', Correlation::PerState},
         {"direction of the cell (lens map)", 'A', Correlation::PerState},
         {"LED drift", 'B', Correlation::PerState},
     };
@@ -130,6 +132,9 @@ Calibrated calibrate(const CellSignal& sample,
             u[WhiteCommon] = std::abs(q * fw) * references.white.certificate().uCommon;
             u[WhitePerDirection] = std::abs(q * fw) * references.white.certificate().uPerDirection;
             u[LowerCommon] = std::abs(1 - q) * (*certifiedBlack.uSystematic)[band];
+            u[Glare] = std::abs(gain) * std::hypot(sample.uGlare[cell],
+                                                   q * white.uGlare[cell],
+                                                   (1 - q) * black.uGlare[cell]);
             u[LedDrift] =
                 rig.ledDrift * std::abs(gain) *
                 std::hypot(

@@ -10,9 +10,10 @@
 // (3.2e-5 against 1e-5 / sr), and give up the one independent witness of the trap (radiometry.md
 // 0.4, 5.1). Uncertainties are first order. Random: the noise of the three signals. Systematic:
 // white, common and per direction, by q f_w; black or zero by (1 - q) u(f_b); the lens map's angle
-// by the local slope of f; and the drift of the LED. Each of the three captures was lit with a
-// relative error of its own, independent, of the size d that the rig is known for, and a signal is
-// as wrong as its light:
+// by the local slope of f; the glare that the three signals were put right by, known to g, h and k,
+// by |df/dS| sqrt(g^2 + (q h)^2 + ((1 - q) k)^2); and the drift of the LED. Each of the three
+// captures was lit with a relative error of its own, independent, of the size d that the rig is
+// known for, and a signal is as wrong as its light:
 //     u = d |df/dS| sqrt(S^2 + (q S_w)^2 + ((1 - q) S_b)^2),
 // sqrt(2) d f where sample and white are far brighter than black; all cells of a state share it.
 //

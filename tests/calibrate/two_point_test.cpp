@@ -164,6 +164,39 @@ TEST(TwoPoint, LedDriftCountsTwiceForBrightSamplesAndIsNotRandom) {
     EXPECT_EQ(with.samples.f[cell], without.samples.f[cell]);
 }
 
+TEST(TwoPoint, GlareIsWhatThreeSignalsOfThatErrorDo) {
+    const Tiles tiles;
+    const auto raised = [](CellSignal signal, double error, bool known) {
+        for (std::size_t cell = 0; cell < signal.size(); ++cell) {
+            if (known) signal.uGlare[cell] = error;
+            if (!known) signal.signal[cell] += error;
+        }
+        return signal;
+    };
+    for (const double level : {1e-3, 1.0}) {
+        const CellSignal sample =
+            signalOf([=](const Direction& wo) { return level * slanted(wo); });
+        const CellSamples right = tiles(sample).samples;
+        Tiles budgeted = tiles, white = tiles, black = tiles;
+        budgeted.whiteSignal = raised(tiles.whiteSignal, 3000, true);
+        budgeted.blackSignal = raised(tiles.blackSignal, 100, true);
+        white.whiteSignal = raised(tiles.whiteSignal, 3000, false);
+        black.blackSignal = raised(tiles.blackSignal, 100, false);
+        const Calibrated known = budgeted(raised(sample, 500, true));
+        const CellSamples one = tiles(raised(sample, 500, false)).samples;
+        const CellSamples two = white(sample).samples;
+        const CellSamples three = black(sample).samples;
+        const std::size_t cell = 5000;
+        const double all = std::hypot(one.f[cell] - right.f[cell],
+                                      two.f[cell] - right.f[cell],
+                                      three.f[cell] - right.f[cell]);
+        const double added = std::sqrt(std::pow(known.samples.uSystematic[cell], 2) -
+                                       std::pow(right.uSystematic[cell], 2));
+        EXPECT_NEAR(added / all, 1, 0.01) << level;
+        EXPECT_EQ(known.samples.f[cell], right.f[cell]);
+    }
+}
+
 TEST(TwoPoint, GeometryIsSlopeTimesAngle) {
     const Tiles tiles;
     const Radians u = 0.5_deg;
@@ -246,14 +279,15 @@ TEST(TwoPoint, AMissingReferenceCellIsMissing) {
 TEST(TwoPoint, BudgetNamesEveryComponent) {
     const Tiles tiles;
     const Budget budget = tiles(signalOf(slanted), 0.1_deg, 0.002).budget;
-    ASSERT_EQ(budget.size(), 8U);
+    ASSERT_EQ(budget.size(), 9U);
     for (const BudgetComponent& component : budget) {
         EXPECT_TRUE(component.type == 'A' || component.type == 'B');
         EXPECT_FALSE(name(component.correlation).empty());
         if (component.name == "white reference, common") {
             EXPECT_NEAR(component.medianRelative, 0.005, 5e-5);
             EXPECT_EQ(component.correlation, Correlation::Common);
-        } else if (component.name == "white reference, per direction") {
+        } else if (component.name == "white reference, per direction" ||
+                   component.name == "glare") {
             EXPECT_EQ(component.medianRelative, 0);
         } else {
             EXPECT_GT(component.medianRelative, 0) << component.name;

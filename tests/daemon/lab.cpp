@@ -7,7 +7,11 @@
 
 namespace gonio::daemon::test {
 
-Lab::Lab(const std::string& rigErrors, const std::string& systematic, std::uint64_t seed) {
+Lab::Lab(const std::string& rigErrors,
+         const std::string& systematic,
+         std::uint64_t seed,
+         int frames)
+    : frames_(frames) {
     auto profile = readProfile(defaultProfile());
     EXPECT_TRUE(profile) << profile.error().message;
     profile_ = std::move(*profile);
@@ -43,7 +47,7 @@ void Lab::calibrateMirror() {
     lens_ = std::move(*lens);
 }
 
-Captured Lab::captured(const std::string& what, const BracketPlan& plan) {
+Lab::Seen Lab::seen(const std::string& what, const BracketPlan& plan) {
     sim::Placement placement{.role = sim::Role::Sample, .surface = nullptr, .wedge = {}};
     if (what == "zero") {
         placement.role = sim::Role::Zero;
@@ -58,27 +62,55 @@ Captured Lab::captured(const std::string& what, const BracketPlan& plan) {
     door_->device().place(std::move(placement));
     constexpr int kDarkFrames = 4;
     Bench here = bench();
-    auto seen = measurePlacement(here, lens_->fit.map, plan, kDarkFrames);
-    EXPECT_TRUE(seen) << seen.error().message;
-    return std::move(*seen);
+    here.glare = lens_->glare;
+    auto captured = measurePlacement(here, lens_->fit.map, plan, kDarkFrames);
+    EXPECT_TRUE(captured) << captured.error().message;
+    Seen seen{.clean = std::move(captured->signals), .glaring = {}};
+    seen.glaring.resize(seen.clean.size());
+    const Window& window = captured->raw.states.front().merged.window;
+    const proc::Binning binning(lens_->fit.map, window, kField);
+    for (const proc::RawState& state : captured->raw.states) {
+        seen.glaring[static_cast<std::size_t>(state.merged.led)][index(state.merged.band)] =
+            binning.bin(state.merged);
+    }
+    return seen;
 }
 
-ReferenceRecord Lab::reference(const std::string& what, const BracketPlan& plan) {
-    return {.info = {.name = what}, .signals = captured(what, plan).signals};
+Lab::BothWays Lab::reference(const std::string& what, const BracketPlan& plan) {
+    Seen both = seen(what, plan);
+    return {ReferenceRecord{.info = {.name = what}, .signals = std::move(both.clean)},
+            ReferenceRecord{.info = {.name = what}, .signals = std::move(both.glaring)}};
 }
 
-RigReferences Lab::references(bool zero) const {
+void Lab::calibrateBlack() {
+    black_ = reference("black", {.frames = frames_, .dim = false, .first = 5});
+}
+
+void Lab::calibrateWhite() {
+    white_ = reference("white", {.frames = frames_, .dim = false, .longest = 3, .first = 2});
+}
+
+void Lab::calibrateZero() {
+    zero_ = reference("zero", {.frames = frames_, .dim = false, .first = 5});
+}
+
+RigReferences Lab::references(Lower lower, Glare glare) const {
+    const auto way = static_cast<std::size_t>(glare);
     return {.lens = *lens_,
-            .white = white_,
-            .black = black_,
+            .white = white_[way],
+            .black = black_[way],
             .certified = *certified_,
             .profile = profile_,
-            .zero = zero ? &zero_ : nullptr};
+            .zero = lower == Lower::Zero ? &zero_[way] : nullptr};
 }
 
-proc::SampleSet Lab::calibrated(const PlacementSignals& signals, bool zero) const {
+proc::SampleSet Lab::calibrated(const Seen& sample, Lower lower, Glare glare) const {
     constexpr bool kForce = true;
-    auto set = calibrateSample(signals, ledAngles(), references(zero), {.name = "x"}, kForce);
+    auto set = calibrateSample(glare == Glare::TakenOff ? sample.clean : sample.glaring,
+                               ledAngles(),
+                               references(lower, glare),
+                               {.name = "x"},
+                               kForce);
     EXPECT_TRUE(set) << set.error().message;
     return std::move(*set);
 }

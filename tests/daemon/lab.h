@@ -2,6 +2,7 @@
 // A calibrated simulated rig in this process: the references taken, samples measured, the truth
 // known. What a job of the daemon does, without store and daemon.
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,30 +16,48 @@ namespace gonio::daemon::test {
 
 class Lab {
 public:
-    /// `rigErrors` as on the command line; `systematic`: none, random, ... (references).
-    Lab(const std::string& rigErrors, const std::string& systematic, std::uint64_t seed);
+    /// `rigErrors` as on the command line; `systematic`: none, random, ... (references). `frames`:
+    /// of each exposure of a reference; a job takes 8.
+    Lab(const std::string& rigErrors,
+        const std::string& systematic,
+        std::uint64_t seed,
+        int frames = 8);
 
     /// Takes the lens map.
     void calibrateMirror();
-    /// The signals of a reference, or of a sample by its model.
-    [[nodiscard]] Captured captured(const std::string& what, const BracketPlan& plan);
-    void calibrateBlack() { black_ = reference("black", {.frames = 8, .dim = false, .first = 5}); }
-    void calibrateWhite() {
-        white_ = reference("white", {.frames = 8, .dim = false, .longest = 3, .first = 2});
-    }
-    void calibrateZero() { zero_ = reference("zero", {.frames = 8, .dim = false, .first = 5}); }
+    /// What was seen of a placement, with the lens's glare taken off, and with it.
+    struct Seen {
+        PlacementSignals clean, glaring;
+    };
+    /// Of a reference, or of a sample by its model.
+    [[nodiscard]] Seen seen(const std::string& what, const BracketPlan& plan);
+    void calibrateBlack();
+    void calibrateWhite();
+    void calibrateZero();
 
-    /// What the references say of these signals; with the zero reference if `zero`.
-    [[nodiscard]] proc::SampleSet calibrated(const PlacementSignals& signals, bool zero) const;
-    [[nodiscard]] RigReferences references(bool zero) const;
+    /// What the references say of a sample: with the zero reference or without it, with the glare
+    /// of all pictures taken off or left in.
+    enum class Lower {
+        Black,
+        Zero
+    };
+    enum class Glare {
+        TakenOff,
+        LeftIn
+    };
+    [[nodiscard]] proc::SampleSet calibrated(const Seen& sample,
+                                             Lower lower,
+                                             Glare glare = Glare::TakenOff) const;
+    [[nodiscard]] RigReferences references(Lower lower, Glare glare = Glare::TakenOff) const;
 
     [[nodiscard]] const std::optional<LensRecord>& lens() const { return lens_; }
-    [[nodiscard]] LensRecord& lens() { return *lens_; }
     [[nodiscard]] std::vector<Radians> ledAngles() const { return rig_->identify().ledAngles; }
 
 private:
     [[nodiscard]] Bench bench();
-    [[nodiscard]] ReferenceRecord reference(const std::string& what, const BracketPlan& plan);
+    /// By Glare.
+    using BothWays = std::array<ReferenceRecord, 2>;
+    [[nodiscard]] BothWays reference(const std::string& what, const BracketPlan& plan);
 
     RigProfile profile_;
     std::optional<References> certified_;
@@ -47,7 +66,8 @@ private:
     std::optional<driver::Rig> rig_;
     std::uint64_t nextPlanStep_ = 1;
     std::optional<LensRecord> lens_;
-    ReferenceRecord white_, black_, zero_;
+    BothWays white_, black_, zero_;
+    int frames_;
 };
 
 }  // namespace gonio::daemon::test
