@@ -33,7 +33,8 @@ struct GlareSpread {
     bool operator==(const GlareSpread&) const = default;
 };
 
-/// The pixels of a window that see the field. A field is convex, so that each row of it is one span.
+/// The pixels of a window that see the field. A field is convex, so that each row of it is one
+/// span.
 class FieldPixels {
 public:
     FieldPixels(const LensMap& map, const Window& window, Radians field);

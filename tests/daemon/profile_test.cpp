@@ -96,7 +96,7 @@ TEST_F(Profile, EveryKeyIsAskedForByName) {
 
 TEST_F(Profile, ALightTrapIsKnownTo1eMinus5UnlessTheFileSaysOtherwise) {
     EXPECT_EQ(read(kGood)->zeroUncertainty, 1e-5);
-    std::string text = kGood;
+    std::string text(kGood);
     const std::size_t at = text.find("black_reflectance");
     ASSERT_NE(at, std::string::npos);
     text.insert(at, "zero_uncertainty_per_sr = 3e-6\n");
