@@ -113,12 +113,15 @@ Result<Captured> capturePlacement(const Bench& bench,
     const Stopwatch preparing(bench.clock);
     const auto binning = alongside(bench.rig, [&] { return proc::Binning(lens, *window, kField); });
     if (!binning) return binning.error();
-    const proc::GlareFilter glare(bench.glare.value_or(proc::GlareSpread{}), lens, *window, kField);
+    const auto glare = alongside(bench.rig, [&] {
+        return proc::GlareFilter(bench.glare.value_or(proc::GlareSpread{}), lens, *window, kField);
+    });
+    if (!glare) return glare.error();
     const Seconds prepared = preparing.elapsed();
     Gathering gathering(bench.rig,
                         {.darks = *darks,
                          .binning = *binning,
-                         .glare = glare,
+                         .glare = *glare,
                          .noise = bench.profile.noise,
                          .clock = bench.clock});
     const std::vector<State> states = sequencer.states();
