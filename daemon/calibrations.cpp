@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "daemon/sequencer.h"
+#include "proc/core/log.h"
 #include "proc/core/number_text.h"
 #include "proc/formats/file_bytes.h"
 #include "proc/formats/graw_exr.h"
@@ -14,7 +15,7 @@ namespace gonio::daemon {
 namespace {
 
 constexpr int kMostLeds = 64;
-constexpr int kKinds = 3;  // mirror, black, white
+constexpr int kKinds = 4;  // mirror, black, white, zero
 constexpr Seconds kClocksApart = std::chrono::minutes(5);
 
 /// Seconds since 1970; empty for what is no ISO 8601 date as this program writes it.
@@ -36,9 +37,10 @@ std::string runAgain(const CalibrationRecord& calibration) {
 Result<CalibrationRecord> numbered(Store& store, std::string_view text, const std::string& rig) {
     const auto number = parseInteger(text);
     if (!number || *number < 1) {
-        return Error{ErrorKind::Usage,
-                     "calibration '" + std::string(text) +
-                         "': wanted a number, or three such as 10+11+12; see gonio calibrations"};
+        return Error{
+            ErrorKind::Usage,
+            "calibration '" + std::string(text) +
+                "': wanted a number, or three such as 10+11+12, or four; see gonio calibrations"};
     }
     auto found = store.calibration(*number);
     if (!found) return found.error();
@@ -51,14 +53,15 @@ Result<CalibrationRecord> numbered(Store& store, std::string_view text, const st
 CalibrationRecord* placeOf(CalibrationSet& set, const std::string& kind) {
     if (kind == "mirror") return &set.mirror;
     if (kind == "black") return &set.black;
-    return kind == "white" ? &set.white : nullptr;
+    if (kind == "white") return &set.white;
+    return kind == "zero" ? &set.zero.emplace() : nullptr;
 }
 
 }  // namespace
 
 std::string CalibrationSet::id() const {
     return std::to_string(mirror.id) + "+" + std::to_string(black.id) + "+" +
-           std::to_string(white.id);
+           std::to_string(white.id) + (zero ? "+" + std::to_string(zero->id) : "");
 }
 
 Result<CalibrationRecord> newestOf(Store& store, const std::string& rig, const std::string& kind) {
@@ -77,6 +80,9 @@ Result<CalibrationSet> newestSet(Store& store, const std::string& rig) {
         if (!newest) return newest.error();
         *placeOf(set, kind) = std::move(*newest);
     }
+    Result<std::optional<CalibrationRecord>> zero = store.newestCalibration(rig, "zero");
+    if (!zero) return zero.error();
+    set.zero = std::move(*zero);
     return set;
 }
 
@@ -84,6 +90,7 @@ Result<CalibrationSet> parseSet(Store& store,
                                 std::string_view text,
                                 const CalibrationSet& otherwise) {
     CalibrationSet set = otherwise;
+    if (text.find('+') != std::string_view::npos) set.zero.reset();  // it is said, or not there
     std::string_view rest = text;
     int count = 0;
     for (bool more = true; more && count < kKinds; ++count) {
@@ -95,10 +102,11 @@ Result<CalibrationSet> parseSet(Store& store,
         if (more) rest.remove_prefix(plus + 1);
     }
     if (count == 1 || set.id() == text) return set;
-    return Error{
-        ErrorKind::Usage,
-        "calibration '" + std::string(text) +
-            "': wanted one number, or those of a mirror, a black and a white, in this order"};
+    return Error{ErrorKind::Usage,
+                 "calibration '" + std::string(text) +
+                     "': wanted one number, or those of a mirror, a black, a white and, where "
+                     "there is one, a "
+                     "zero, in this order"};
 }
 
 std::string whyNot(const CalibrationRecord& calibration,
@@ -135,6 +143,14 @@ std::string whyNot(const CalibrationRecord& calibration,
     return {};
 }
 
+void leaveOutStaleZero(CalibrationSet& set, const RigNow& now, const ValidityLimits& limits) {
+    if (!set.zero) return;
+    const std::string why = whyNot(*set.zero, now, limits);
+    if (why.empty()) return;
+    log::warning(why + "; measured without it");
+    set.zero.reset();
+}
+
 Result<LensRecord> readLens(const CalibrationRecord& mirror) {
     const Result<std::string> text = proc::readFile(mirror.file);
     if (!text) return text.error();
@@ -147,6 +163,7 @@ Result<PlacementSignals> binned(const std::filesystem::path& raw, const LensReco
     if (capture->states.empty()) return Error{ErrorKind::File, raw.string() + ": no states"};
     const Window& window = capture->states.front().merged.window;
     const proc::Binning binning(lens.fit.map, window, kField);
+    const proc::GlareFilter glare = glareFilterOf(lens, window);
     PlacementSignals signals;
     for (const proc::RawState& state : capture->states) {
         if (state.merged.window != window || state.merged.led < 0 ||
@@ -157,7 +174,7 @@ Result<PlacementSignals> binned(const std::filesystem::path& raw, const LensReco
         }
         const auto led = static_cast<std::size_t>(state.merged.led);
         if (signals.size() <= led) signals.resize(led + 1);
-        signals[led][index(state.merged.band)] = binning.bin(state.merged);
+        signals[led][index(state.merged.band)] = glare.bin(state.merged, binning);
     }
     return signals;
 }
@@ -208,7 +225,23 @@ Result<LoadedSet> loadSet(Store& store, const CalibrationSet& set) {
     if (!black) return black.error();
     Result<ReferenceRecord> white = readReference(store, set.white, set.mirror, *lens);
     if (!white) return white.error();
-    return LoadedSet{std::move(*lens), std::move(*black), std::move(*white)};
+    LoadedSet loaded{std::move(*lens), std::move(*black), std::move(*white), std::nullopt};
+    if (!set.zero) return loaded;
+    Result<ReferenceRecord> zero = readReference(store, *set.zero, set.mirror, loaded.lens);
+    if (!zero) return zero.error();
+    loaded.zero = std::move(*zero);
+    return loaded;
+}
+
+RigReferences referencesOf(const LoadedSet& loaded,
+                           const References& certified,
+                           const RigProfile& profile) {
+    return {.lens = loaded.lens,
+            .white = loaded.white,
+            .black = loaded.black,
+            .certified = certified,
+            .profile = profile,
+            .zero = loaded.zero ? &*loaded.zero : nullptr};
 }
 
 }  // namespace gonio::daemon

@@ -22,6 +22,30 @@ proc::RigTiming timingOf(const driver::RigInfo& rig, const RigProfile& profile) 
     return timing;
 }
 
+/// Of one state. NaN where nothing is known.
+Responsivities::Cells responsivitiesOf(const proc::References& references,
+                                       const Direction& wi,
+                                       Band band) {
+    const std::size_t count = proc::CellGrid::count();
+    Responsivities::Cells cells{.signalPerF = std::vector(count, kNaN),
+                                .dark = std::vector(count, kNaN)};
+    const proc::CellSignal& white = references.whiteSignal;
+    const proc::CellSignal& black = references.blackSignal;
+    for (std::size_t cell = 0; cell < count; ++cell) {
+        const LightView pair{.in = wi, .out = proc::CellGrid::centre(cell)};
+        const Answer bright = references.white.answer(pair);
+        const Answer dark = references.black.answer(pair);
+        if (!bright.present() || !dark.present()) continue;
+        if (!white.present(cell) || !black.present(cell)) continue;
+        const double contrast = white.signal[cell] - black.signal[cell];
+        const double perF = contrast / (bright.f[band] - dark.f[band]);
+        if (!(perF > 0)) continue;
+        cells.signalPerF[cell] = perF;
+        cells.dark[cell] = black.signal[cell] - dark.f[band] * perF;
+    }
+    return cells;
+}
+
 }  // namespace
 
 proc::RigModel rigModel(const driver::RigInfo& rig,
@@ -42,44 +66,31 @@ proc::RigModel rigModel(const driver::RigInfo& rig,
 }
 
 proc::SystematicFloor floorOf(const RigReferences& references) {
-    const proc::Certificate& white = references.certified.white->certificate();
+    const proc::References first = referencesOf(references, {});
+    const proc::Certificate& white = first.white.certificate();
     const RigProfile& profile = references.profile;
+    const double byLight = std::sqrt(2.0);  // of the sample's capture and the white's
+    const double lower = references.zero != nullptr
+                             ? profile.zeroUncertainty
+                             : profile.blackReflectance / kPi * profile.blackRelativeUncertainty;
     return proc::SystematicFloor({
         {"white reference, common", proc::Correlation::Common, white.uCommon, 0},
         {"white reference, per direction", proc::Correlation::PerCell, white.uPerDirection, 0},
-        {"LED drift", proc::Correlation::PerState, std::sqrt(2.0) * profile.ledDrift, 0},
-        {"black reference",
-         proc::Correlation::Common,
-         0,
-         profile.blackReflectance / kPi * profile.blackRelativeUncertainty},
+        {"LED drift", proc::Correlation::PerState, byLight * profile.ledDrift, 0},
+        {"exposure ratio", proc::Correlation::PerState, byLight * profile.exposureRatio, 0},
+        {"linearity", proc::Correlation::Common, byLight * profile.linearity, 0},
+        {first.black.certificate().name + " reference", proc::Correlation::Common, 0, lower},
     });
 }
 
 Responsivities::Responsivities(const RigReferences& references,
                                const std::vector<Radians>& ledAngles)
     : leds_(ledAngles.size()) {
-    const std::size_t cells = proc::CellGrid::count();
     for (std::size_t led = 0; led < leds_.size(); ++led) {
         const Direction wi = Direction::fromSpherical(ledAngles[led], Radians(0));
-        for (Cells& band : leds_[led]) {
-            band.signalPerF.assign(cells, kNaN);
-            band.dark.assign(cells, kNaN);
-        }
-        for (std::size_t cell = 0; cell < cells; ++cell) {
-            const LightView pair{.in = wi, .out = proc::CellGrid::centre(cell)};
-            const Answer white = references.certified.white->answer(pair);
-            const Answer black = references.certified.black->answer(pair);
-            if (!white.present() || !black.present()) continue;
-            for (const Band band : kBands) {
-                const proc::CellSignal& sw = references.white.signals[led][index(band)];
-                const proc::CellSignal& sb = references.black.signals[led][index(band)];
-                if (!sw.present(cell) || !sb.present(cell)) continue;
-                const double perF =
-                    (sw.signal[cell] - sb.signal[cell]) / (white.f[band] - black.f[band]);
-                if (!(perF > 0)) continue;
-                leds_[led][index(band)].signalPerF[cell] = perF;
-                leds_[led][index(band)].dark[cell] = sb.signal[cell] - black.f[band] * perF;
-            }
+        for (const Band band : kBands) {
+            leds_[led][index(band)] =
+                responsivitiesOf(referencesOf(references, {static_cast<int>(led), band}), wi, band);
         }
     }
 }

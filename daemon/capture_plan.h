@@ -19,16 +19,16 @@ namespace gonio::daemon {
 /// the calibration's budget (proc/calibrate/two_point.h) that the profile knows.
 [[nodiscard]] proc::SystematicFloor floorOf(const RigReferences& references);
 
-/// By white and black, what the signal of each cell means.
+/// By white, and black or zero, what the signal of each cell means.
 class Responsivities {
 public:
+    struct Cells {
+        std::vector<double> signalPerF, dark;  ///< NaN: not known
+    };
     Responsivities(const RigReferences& references, const std::vector<Radians>& ledAngles);
     [[nodiscard]] proc::Responsivity of(State state) const;
 
 private:
-    struct Cells {
-        std::vector<double> signalPerF, dark;  ///< NaN: not known
-    };
     std::vector<std::array<Cells, 3>> leds_;
 };
 

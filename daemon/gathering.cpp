@@ -68,7 +68,7 @@ Result<Processed> Processing::operator()(State state,
         if (!merged) return merged.error();
     }
     for (proc::RawExposure& exposure : exposures) describe(scales, correct, exposure);
-    Processed done{.signal = binning.bin(*merged),
+    Processed done{.signal = glare.bin(*merged, binning),
                    .raw = {.merged = std::move(*merged), .bracket = std::move(exposures)},
                    .lightStep = step,
                    .compute = {}};

@@ -11,6 +11,7 @@
 #include "daemon/alongside.h"
 #include "daemon/measurement.h"
 #include "proc/optics/binning.h"
+#include "proc/optics/glare.h"
 #include "proc/radiance/dark.h"
 #include "proc/radiance/merge.h"
 
@@ -28,6 +29,7 @@ struct Processed {
 struct Processing {
     const proc::DarkLibrary& darks;
     const proc::Binning& binning;
+    const proc::GlareFilter& glare;
     const RigProfile& profile;
     const Clock& clock;
 

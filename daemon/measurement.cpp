@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "daemon/alongside.h"
+#include "daemon/black_check.h"
 #include "daemon/gathering.h"
+#include "daemon/glare_views.h"
 #include "daemon/sample_pose.h"
 #include "proc/core/median.h"
 #include "proc/core/number_text.h"
@@ -61,6 +63,7 @@ Result<LensRecord> takeLens(const Bench& bench, const PlaceMirror& place) {
     if (!darks) return darks.error();
     const std::vector<Radians> leds = bench.rig.identify().ledAngles;
     std::vector<proc::MirrorSpot> spots;
+    GlareViews glareViews(leds, bench);
     for (const proc::Wedge& wedge : proc::mirrorWedges()) {
         if (Result<void> dark = bench.rig.darken(); !dark) return dark.error();
         if (Result<void> placed = place(wedge); !placed) return placed.error();
@@ -82,14 +85,19 @@ Result<LensRecord> takeLens(const Bench& bench, const PlaceMirror& place) {
             if (!spot) return spot.error();
             spots.push_back({.wedge = wedge, .light = light, .at = spot->at, .sigma = spot->sigma});
         }
+        if (Result<void> on = glareViews.take(wedge, sequencer, *darks); !on) return on.error();
     }
     const proc::SensorPoint middle{window->x + 0.5 * window->size.width,
                                    window->y + 0.5 * window->size.height};
     Result<proc::LensFit> fit =
         proc::fitLens(spots, middle, kPixelsPerDegree, bench.profile.wedgeTolerance);
     if (!fit) return fit.error();
-    return LensRecord{
-        .fit = std::move(*fit), .spots = static_cast<int>(spots.size()), .dateUtc = {}};
+    const auto glare = alongside(bench.rig, [&] { return glareViews.spread(fit->map); });
+    if (!glare) return glare.error();
+    return LensRecord{.fit = std::move(*fit),
+                      .spots = static_cast<int>(spots.size()),
+                      .dateUtc = {},
+                      .glare = *glare};
 }
 
 Result<Captured> capturePlacement(const Bench& bench,
@@ -104,10 +112,17 @@ Result<Captured> capturePlacement(const Bench& bench,
     const Stopwatch preparing(bench.clock);
     const auto binning = alongside(bench.rig, [&] { return proc::Binning(lens, *window, kField); });
     if (!binning) return binning.error();
+    const auto glare = alongside(bench.rig, [&] {
+        return proc::GlareFilter(bench.glare.value_or(proc::GlareSpread{}), lens, *window, kField);
+    });
+    if (!glare) return glare.error();
     const Seconds prepared = preparing.elapsed();
-    Gathering gathering(
-        bench.rig,
-        {.darks = *darks, .binning = *binning, .profile = bench.profile, .clock = bench.clock});
+    Gathering gathering(bench.rig,
+                        {.darks = *darks,
+                         .binning = *binning,
+                         .glare = *glare,
+                         .profile = bench.profile,
+                         .clock = bench.clock});
     const std::vector<State> states = sequencer.states();
     for (std::size_t i = 0; i < states.size(); ++i) {
         const auto then = i + 1 < states.size() ? std::optional(states[i + 1]) : std::nullopt;
@@ -169,10 +184,7 @@ proc::SampleSet asIfFlat(const PlacementSignals& signals,
             const std::size_t b = index(band);
             proc::Calibrated calibrated =
                 proc::calibrate(signals[led][b],
-                                {.whiteSignal = references.white.signals[led][b],
-                                 .blackSignal = references.black.signals[led][b],
-                                 .white = *references.certified.white,
-                                 .black = *references.certified.black},
+                                referencesOf(references, {static_cast<int>(led), band}),
                                 lightAt(ledAngles[led]),
                                 band,
                                 rig);
@@ -204,7 +216,8 @@ Result<Window> configureWindow(driver::Rig& rig) {
 
 int mirrorSteps(const Bench& bench) {
     return static_cast<int>(bench.profile.exposures.size() +
-                            proc::mirrorWedges().size() * bench.rig.identify().ledAngles.size());
+                            proc::mirrorWedges().size() * bench.rig.identify().ledAngles.size()) +
+           GlareViews(bench.rig.identify().ledAngles, bench).count();
 }
 
 int placementSteps(const Bench& bench) {
@@ -238,6 +251,32 @@ Result<void> checkWhite(const PlacementSignals& white, const PlacementSignals& b
     return {};
 }
 
+Result<void> checkZero(const PlacementSignals& zero, const PlacementSignals& black) {
+    for (std::size_t led = 0; led < zero.size(); ++led) {
+        for (Band band : kBands) {
+            if (medianSignal(zero[led][index(band)]) < medianSignal(black[led][index(band)])) {
+                continue;
+            }
+            return Error{ErrorKind::Quality,
+                         stateName({static_cast<int>(led), band}) +
+                             ": the zero reference is not darker than the black; is the light trap "
+                             "placed, and clean?"};
+        }
+    }
+    return {};
+}
+
+proc::References referencesOf(const RigReferences& references, State state) {
+    const auto led = static_cast<std::size_t>(state.led);
+    const std::size_t b = index(state.band);
+    const bool trap = references.zero != nullptr;
+    const ReferenceRecord& lower = trap ? *references.zero : references.black;
+    return {.whiteSignal = references.white.signals[led][b],
+            .blackSignal = lower.signals[led][b],
+            .white = *references.certified.white,
+            .black = trap ? *references.certified.zero : *references.certified.black};
+}
+
 Result<proc::SampleSet> calibrateSample(const PlacementSignals& signals,
                                         const std::vector<Radians>& ledAngles,
                                         const RigReferences& references,
@@ -247,6 +286,7 @@ Result<proc::SampleSet> calibrateSample(const PlacementSignals& signals,
     const proc::AngleUncertainty uAngle = proc::DirectionUncertainty(references.lens.fit);
     proc::SampleSet set = asIfFlat(signals, ledAngles, references, uAngle);
     info.budgetJson = std::move(set.info.budgetJson);
+    noteBlackCheck(checkBlack(references, ledAngles), info);
     set.info = std::move(info);
     const Radians uLens = uAngle(Direction::fromSpherical(kTypicalView, Radians(0)));
     Result<proc::SampleSet> flat = referredToItsNormal(std::move(set), uLens, force);

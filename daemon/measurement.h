@@ -34,6 +34,8 @@ struct Bench {
     std::function<void()> alive = [] {};
     /// How a planned run stands against its plan, after each capture.
     std::function<void(const proc::Progress&)> outlook = [](const proc::Progress&) {};
+    /// The lens's glare, which signals are put right by; empty: none is taken off.
+    std::optional<proc::GlareSpread> glare{};
 };
 
 /// The window that is read: the square in the middle of the sensor.
@@ -70,6 +72,8 @@ struct Captured {
 
 /// Quality error when white is not far brighter than black.
 [[nodiscard]] Result<void> checkWhite(const PlacementSignals& white, const PlacementSignals& black);
+/// Quality error when the zero reference is not darker than black.
+[[nodiscard]] Result<void> checkZero(const PlacementSignals& zero, const PlacementSignals& black);
 
 /// Signals -> f, with the budget of each state as JSON in `info.budgetJson` and the achieved
 /// uncertainty (median, k = 1, relative) in `info`.
@@ -79,7 +83,10 @@ struct RigReferences {
     const ReferenceRecord& black;
     const References& certified;
     const RigProfile& profile;
+    const ReferenceRecord* zero = nullptr;  ///< null: there is none, and black stands for it
 };
+/// What a state is held against: white, and zero or black.
+[[nodiscard]] proc::References referencesOf(const RigReferences& references, State state);
 /// With the tilt of the sample found, and corrected where that is sound (sample_pose.h): Quality
 /// error for a wavy sample unless `force`.
 [[nodiscard]] Result<proc::SampleSet> calibrateSample(const PlacementSignals& signals,

@@ -87,8 +87,11 @@ std::vector<KnownShot> PlannedRun::pilotShots(State state) const {
 Result<const proc::Plan*> PlannedRun::plan() {
     const Result<Window> window = configureWindow(bench_.rig);
     if (!window) return window.error();
-    makingBinning_.emplace([this, window = *window] {
-        return proc::Binning(references_.lens.fit.map, window, kField);
+    seeing_.emplace([this, window = *window]() -> Result<void> {
+        const proc::LensMap& map = references_.lens.fit.map;
+        binning_.emplace(map, window, kField);
+        glare_.emplace(bench_.glare.value_or(proc::GlareSpread{}), map, window, kField);
+        return {};
     });
     if (Result<void> taken = takePilots(); !taken) return taken.error();
     return &*plan_;
@@ -138,11 +141,10 @@ Result<void> PlannedRun::takePilots() {
 
 /// Begins to learn from a state's pilots, once what is being learnt is known.
 Result<void> PlannedRun::learn(std::size_t state) {
-    if (makingBinning_) {
-        Result<proc::Binning> binning = makingBinning_->await(bench_.rig, bench_.alive);
-        makingBinning_.reset();
-        if (!binning) return binning.error();
-        binning_ = std::move(*binning);
+    if (seeing_) {
+        const Result<void> seen = seeing_->await(bench_.rig, bench_.alive);
+        seeing_.reset();
+        if (!seen) return seen;
     }
     if (Result<void> last = settle(); !last) return last;
     learning_.emplace([this, state]() -> Result<proc::StatePilot> {
@@ -154,7 +156,8 @@ Result<void> PlannedRun::learn(std::size_t state) {
         return proc::StatePilot{
             .led = of.led,
             .band = of.band,
-            .cells = proc::pilotCells(binning_->bin(*merged), responsivities_.of(of), *binning_)};
+            .cells = proc::pilotCells(
+                glare_->bin(*merged, *binning_), responsivities_.of(of), *binning_)};
     });
     return {};
 }
@@ -201,9 +204,12 @@ Result<void> PlannedRun::takeDarks() {
 }
 
 Result<Captured> PlannedRun::takeStates() {
-    Gathering gathering(
-        bench_.rig,
-        {.darks = darks_, .binning = *binning_, .profile = bench_.profile, .clock = bench_.clock});
+    Gathering gathering(bench_.rig,
+                        {.darks = darks_,
+                         .binning = *binning_,
+                         .glare = *glare_,
+                         .profile = bench_.profile,
+                         .clock = bench_.clock});
     std::vector<KnownShot> shots;
     std::vector<std::size_t> stateOf;  // of each shot; behind the last: the repeated pilots
     const auto list = [&](std::size_t state, const KnownShot& shot) {
@@ -267,7 +273,7 @@ Result<Repeat> PlannedRun::repeated(const std::vector<Frame>& again) const {
     const auto signalOf = [&](const std::vector<Frame>& frames) -> Result<proc::CellSignal> {
         const auto merged = proc::merge(frames, state.band, darks_, bench_.profile.noise);
         if (!merged) return merged.error();
-        return binning_->bin(*merged);
+        return glare_->bin(*merged, *binning_);
     };
     Result<proc::CellSignal> first = signalOf(pilots_.front());
     if (!first) return first.error();

@@ -62,10 +62,11 @@ private:
     std::map<Microseconds, int> darksTaken_;
     proc::DarkLibrary darks_;
     std::optional<proc::Binning> binning_;
+    std::optional<proc::GlareFilter> glare_;
     std::optional<proc::Plan> plan_;
     Seconds compute_{0};
 
-    std::optional<Alongside<proc::Binning>> makingBinning_;
+    std::optional<Alongside<void>> seeing_;  ///< binning and glare, in the making
     std::optional<Alongside<proc::StatePilot>> learning_;
 };
 

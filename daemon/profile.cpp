@@ -169,6 +169,8 @@ Result<RigProfile> readProfile(const fs::path& file) {
     if (white != kIdealWhite) profile.whiteReference = configDirectory() / white;
     profile.blackReflectance = keys.positive("references.black_reflectance");
     profile.blackRelativeUncertainty = keys.positive("references.black_relative_uncertainty");
+    profile.zeroUncertainty =
+        keys.positiveOr("references.zero_uncertainty_per_sr", profile.zeroUncertainty);
     ValidityLimits& good = profile.validity;
     good.mirror = kDay * keys.positiveOr("validity.mirror_days", good.mirror / kDay);
     good.tiles = kHour * keys.positiveOr("validity.tile_hours", good.tiles / kHour);

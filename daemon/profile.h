@@ -32,6 +32,7 @@ struct RigProfile {
     std::filesystem::path whiteReference;  ///< empty ("1/pi" in the file): without a table
     double blackReflectance = 0;
     double blackRelativeUncertainty = 0;
+    double zeroUncertainty = 1e-5;  ///< of the light trap's f = 0, 1/sr, k = 1
     ValidityLimits validity;
 };
 

@@ -19,7 +19,9 @@ Result<References> loadReferences(const RigProfile& profile) {
     return References{
         .white = std::make_shared<const proc::ReferenceTable>(std::move(*white)),
         .black = std::make_shared<const proc::ReferenceTable>(proc::ReferenceTable::lambertian(
-            "black", profile.blackReflectance, profile.blackRelativeUncertainty))};
+            "black", profile.blackReflectance, profile.blackRelativeUncertainty)),
+        .zero = std::make_shared<const proc::ReferenceTable>(
+            proc::ReferenceTable::lightTrap("zero", profile.zeroUncertainty))};
 }
 
 Result<References> loadReferences() {

@@ -1,5 +1,6 @@
 #pragma once
-// The certified references that a rig profile names: the tabulated white and the uniform black.
+// The certified references that a rig profile names: the tabulated white, the uniform black,
+// and the light trap whose f is 0.
 
 #include <memory>
 
@@ -11,6 +12,7 @@ namespace gonio::daemon {
 struct References {
     std::shared_ptr<const proc::ReferenceTable> white;  ///< shared with the simulated rig's stage
     std::shared_ptr<const proc::ReferenceTable> black;
+    std::shared_ptr<const proc::ReferenceTable> zero;
 };
 
 [[nodiscard]] Result<References> loadReferences(const RigProfile& profile);

@@ -17,7 +17,7 @@ proc::CellSamples toSamples(const proc::CellSignal& signal) {
     for (std::size_t cell = 0; cell < signal.size(); ++cell) {
         samples.f[cell] = signal.signal[cell];
         samples.uRandom[cell] = std::sqrt(signal.variance[cell]);
-        if (signal.present(cell)) samples.uSystematic[cell] = 0;
+        if (signal.present(cell)) samples.uSystematic[cell] = signal.uGlare[cell];
     }
     samples.nEff = signal.nEff;
     samples.flags = signal.flags;
@@ -28,6 +28,7 @@ proc::CellSignal toSignal(const proc::CellSamples& samples) {
     proc::CellSignal signal = proc::CellSignal::missing(samples.size());
     for (std::size_t cell = 0; cell < samples.size(); ++cell) {
         signal.variance[cell] = samples.uRandom[cell] * samples.uRandom[cell];
+        if (samples.present(cell)) signal.uGlare[cell] = samples.uSystematic[cell];
     }
     signal.signal = samples.f;
     signal.nEff = samples.nEff;
@@ -35,12 +36,38 @@ proc::CellSignal toSignal(const proc::CellSamples& samples) {
     return signal;
 }
 
+Json toJson(const proc::GlareSpread& glare) {
+    return {{"everywhere", glare.everywhere},
+            {"halo", glare.halo},
+            {"radius_px", glare.radius},
+            {"exponent", glare.exponent},
+            {"u_share", glare.uShare},
+            {"u_relative", glare.uRelative}};
+}
+
+/// Absent where the lens map is of before it was fitted.
+std::optional<proc::GlareSpread> glareFrom(const Json& lens) {
+    const auto found = lens.find("glare");
+    if (found == lens.end()) return std::nullopt;
+    const auto number = [&](const char* key) { return found->at(key).get<double>(); };
+    return proc::GlareSpread{.everywhere = number("everywhere"),
+                             .halo = number("halo"),
+                             .radius = number("radius_px"),
+                             .exponent = number("exponent"),
+                             .uShare = number("u_share"),
+                             .uRelative = number("u_relative")};
+}
+
 }  // namespace
+
+proc::GlareFilter glareFilterOf(const LensRecord& lens, const Window& window) {
+    return {lens.glare.value_or(proc::GlareSpread{}), lens.fit.map, window, kField};
+}
 
 std::string encodeLens(const LensRecord& lens) {
     const auto values = lens.fit.map.values();
     const Eigen::MatrixXd& covariance = lens.fit.covariance;
-    const Json json = {
+    Json json = {
         {"schema", kLensSchema},
         {"date", lens.dateUtc},
         {"spots", lens.spots},
@@ -50,6 +77,7 @@ std::string encodeLens(const LensRecord& lens) {
          std::vector<double>(covariance.data(), covariance.data() + covariance.size())},
         {"rms_px", lens.fit.rmsPixels},
         {"worst_px", lens.fit.worstPixels}};
+    if (lens.glare) json["glare"] = toJson(*lens.glare);
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -70,7 +98,8 @@ Result<LensRecord> decodeLens(std::string_view text, const std::string& name) {
                     .rmsPixels = json.at("rms_px").get<double>(),
                     .worstPixels = json.at("worst_px").get<double>()},
             .spots = json.at("spots").get<int>(),
-            .dateUtc = json.at("date").get<std::string>()};
+            .dateUtc = json.at("date").get<std::string>(),
+            .glare = glareFrom(json)};
     } catch (const std::exception& error) {
         return Error{ErrorKind::File, name + ": " + error.what() + "; run: gonio calibrate mirror"};
     }

@@ -1,15 +1,18 @@
 #pragma once
-// What is kept of a calibration: the lens map (JSON) and the binned signals of the two references
-// (a .gonio whose f holds the signal in electrons per second and steradian, u_random its standard
-// deviation). Their raw captures lie beside them, so that they can be binned again.
+// What is kept of a calibration: the lens map with the lens's glare (JSON) and the binned signals
+// of the two references (a .gonio whose f holds the signal in electrons per second and steradian,
+// u_random its standard deviation, u_systematic what its glare is unknown by). Their raw captures
+// lie beside them, so that they can be binned again.
 
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "proc/core/result.h"
 #include "proc/optics/binning.h"
+#include "proc/optics/glare.h"
 #include "proc/optics/lens_fit.h"
 #include "proc/table/sample_set.h"
 
@@ -22,7 +25,12 @@ struct LensRecord {
     proc::LensFit fit;
     int spots = 0;
     std::string dateUtc;
+    /// Empty: not known, and not taken off.
+    std::optional<proc::GlareSpread> glare{};
 };
+
+/// Takes off the lens's glare; nothing where it is not known.
+[[nodiscard]] proc::GlareFilter glareFilterOf(const LensRecord& lens, const Window& window);
 
 [[nodiscard]] std::string encodeLens(const LensRecord& lens);
 /// `name` stands in errors.

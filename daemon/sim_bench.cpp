@@ -116,6 +116,8 @@ Result<sim::Placement> makePlacement(const SimState& state, const Store& store) 
         placement.role = sim::Role::Nothing;
     } else if (state.placed == "mirror") {
         placement.role = sim::Role::Mirror;
+    } else if (state.placed == "zero") {
+        placement.role = sim::Role::Zero;
     } else if (state.placed == "white" || state.placed == "black") {
         const Result<References> references = loadReferences();
         if (!references) return references.error();
@@ -131,7 +133,8 @@ Result<sim::Placement> makePlacement(const SimState& state, const Store& store) 
 }
 
 bool isReference(const std::string& placed) {
-    return placed == "nothing" || placed == "mirror" || placed == "white" || placed == "black";
+    return placed == "nothing" || placed == "mirror" || placed == "white" || placed == "black" ||
+           placed == "zero";
 }
 
 void describe(const SimState& state, proc::SampleInfo& info) {

@@ -22,13 +22,13 @@ struct SimState {
     std::string serial = "SIM-0001";
     std::uint64_t seed = 1;
     std::string systematic = "random";  ///< errors: none, random, stratum:K
-    std::string placed = "nothing";     ///< nothing, black, white, mirror, or F
+    std::string placed = "nothing";     ///< nothing, black, white, zero, mirror, or F
     sim::Wedge wedge;
     std::string rigErrors = "none";  ///< as on the command line: sim/rig_errors.h
     sim::SampleErrors sampleErrors;
 };
 
-/// What is no sample: nothing, black, white or mirror.
+/// What is no sample: nothing, black, white, zero or mirror.
 [[nodiscard]] bool isReference(const std::string& placed);
 
 /// The defaults when there is no sim.json yet.

@@ -35,7 +35,7 @@ struct SampleRecord {
 struct CalibrationRecord {
     std::int64_t id = 0;  ///< ascending with time
     std::string rig;      ///< serial
-    std::string kind;     ///< "mirror", "black" or "white"
+    std::string kind;     ///< "mirror", "black", "white" or "zero"
     std::string dateUtc;
     std::string profileHash;          ///< of the rig profile; empty: not known
     std::optional<double> celsius{};  ///< of the LED board when it was taken

@@ -17,6 +17,7 @@ enum class Role {
     Sample,
     White,
     Black,
+    Zero,  ///< a light trap: no surface, only what is left of its f
     Mirror
 };
 
@@ -24,7 +25,7 @@ struct Placement {
     Role role = Role::Nothing;
     std::shared_ptr<const Scatterer>
         surface;            ///< of Sample, White, Black; shared with the host's truth
-    Wedge wedge;            ///< of Sample and Mirror: the tiles lie flat
+    Wedge wedge;            ///< of Sample and Mirror: the references lie flat
     SampleErrors errors{};  ///< of Sample; the ambient light of whatever is placed
 };
 

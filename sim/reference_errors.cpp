@@ -13,6 +13,8 @@ namespace {
 constexpr double kWhiteCommon = 0.005;
 constexpr double kWhitePerDirection = 0.003;
 constexpr double kBlack = 0.10;
+constexpr double kZero = 1e-5;                                    // 1/sr
+constexpr std::uint64_t kZeroComponent = std::uint64_t{1} << 32;  // behind all field nodes
 constexpr double kNodeDegrees = 5;
 constexpr std::uint64_t kNodesPerField = 10000;
 constexpr std::size_t kNodesPerRow = 100;
@@ -138,5 +140,7 @@ LedBands WhiteErrors::factor(const Direction& wo) const {
 }
 
 double ReferenceErrors::black() const { return 1 + kBlack * deviate(1); }
+
+double ReferenceErrors::zero() const { return kZero * std::abs(deviate(kZeroComponent)); }
 
 }  // namespace gonio::sim

@@ -1,7 +1,8 @@
 #pragma once
 // How wrong the reference tiles really are, against their certificates: the white by 0.5 % common
 // to all, and 0.3 % per direction, LED and band (a smooth field with unit variance everywhere); the
-// black by 10 % of its reflectance. One draw is one laboratory's tiles.
+// black by 10 % of its reflectance; the light trap, which is taken for f = 0, by 1e-5 / sr. One
+// draw is one laboratory's references.
 
 #include <cstdint>
 #include <optional>
@@ -45,8 +46,12 @@ public:
     /// The same for many directions: all that does not depend on them, worked out once.
     [[nodiscard]] WhiteErrors white(int led) const;
     [[nodiscard]] double black() const;
+    /// f of the light trap, 1/sr, alike in all directions and bands. Never below 0: its root mean
+    /// square over the draws is 1e-5.
+    [[nodiscard]] double zero() const;
 
-    /// Standard deviate of a component, for tests: 0 common white, 1 black, from 2 on field nodes.
+    /// Standard deviate of a component, for tests: 0 common white, 1 black, from 2 on field nodes,
+    /// 1 << 32 zero.
     [[nodiscard]] double deviate(std::uint64_t component) const;
     /// The field of the white: standard normal at every direction.
     [[nodiscard]] double field(int led, Band band, const Direction& wo) const;

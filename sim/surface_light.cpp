@@ -36,6 +36,7 @@ SurfaceLight::SurfaceLight(const Placement& placement, const Flaws& flaws, int l
     if (placement.role == Role::Sample) subsurface_ = subsurface(placement.errors);
     if (placement.role == Role::White) white_ = flaws.references.white(led);
     if (placement.role == Role::Black) black_ = flaws.references.black();
+    if (placement.role == Role::Zero) zero_ = flaws.references.zero();
 }
 
 LedBands SurfaceLight::meanOverSource(const Direction& out) const {
@@ -51,7 +52,7 @@ LedBands SurfaceLight::meanOverSource(const Direction& out) const {
 }
 
 LedBands SurfaceLight::towards(const Direction& wo) const {
-    if (surface_ == nullptr) return {};
+    if (surface_ == nullptr) return LedBands::all(zero_ * wo.z());
     const Direction out = pose_.seenFromSurface(wo);
     if (!out.aboveHorizon()) return {};
     const LedBands f = bandMixture(meanOverSource(out) + subsurface_, crosstalk_);

@@ -32,6 +32,7 @@ private:
     LedBands subsurface_;
     WhiteErrors white_;
     double black_ = 1;
+    double zero_ = 0;  // f where there is no surface: what a light trap leaves
 };
 
 }  // namespace gonio::sim

@@ -40,7 +40,8 @@ Json runningJob(const JobStatus& job) {
 
 Json toJson(const EngineStatus& status) {
     Json calibrations = Json::object();
-    for (const std::string kind : {"mirror", "black", "white"}) calibrations[kind] = nullptr;
+    for (const std::string kind : {"mirror", "black", "white", "zero"})
+        calibrations[kind] = nullptr;
     for (const CalibrationDate& one : status.calibrations) calibrations[one.kind] = one.dateUtc;
     Json rig = {{"kind", status.portKind},
                 {"state", std::string(name(status.state))},

@@ -36,7 +36,8 @@ Result<void> simScore(const CommonOptions& common, const ScoreOptions& options);
 enum class Reference {
     Mirror,
     Black,
-    White
+    White,
+    Zero
 };
 Result<void> calibrate(const CommonOptions& common, Reference reference);
 

@@ -53,7 +53,11 @@ void printStatus(const Json& status) {
              ? textOr(session.at("name"), "") + ", since " + textOr(session.at("opened"), "")
              : "none"}};
     for (const auto& [kind, date] : status.at("calibrations").items()) {
-        rows.push_back({kind, textOr(date, "not calibrated; run: gonio calibrate " + kind)});
+        const bool optional = kind == "zero";
+        rows.push_back({kind,
+                        textOr(date,
+                               optional ? "none, which is no obstacle"
+                                        : "not calibrated; run: gonio calibrate " + kind)});
     }
     const Json& daemon = status.at("daemon");
     rows.push_back({"store", textOr(daemon.at("store"), "")});
@@ -96,7 +100,7 @@ std::string eventLine(const StreamEvent& event, const Json& data) {
 /// What names the same thing in the daemon's folder.
 std::string absolutePlace(const std::string& what) {
     const bool word = what == "nothing" || what == "mirror" || what == "white" || what == "black" ||
-                      what.starts_with("model:") || what.starts_with("sample:");
+                      what == "zero" || what.starts_with("model:") || what.starts_with("sample:");
     return word ? what : fs::absolute(what).lexically_normal().string();
 }
 

@@ -23,15 +23,27 @@ std::string seconds(const Json& json, const char* member) {
     return fixed(json.at(member).get<double>(), 1) + " s";
 }
 
+std::string nameOf(Reference reference) {
+    const char* names[] = {"mirror", "black", "white", "zero"};
+    return names[static_cast<int>(reference)];
+}
+
+/// The share that the lens spreads, k = 1.
+std::string glareLine(const Json& done) {
+    if (done.at("glare_share").is_null()) return "glare not known";
+    return "glare " + fixed(100 * done.at("glare_share").get<double>(), 3) + " % (u " +
+           fixed(100 * done.at("glare_u_share").get<double>(), 4) + " %)";
+}
+
 std::string calibratedLine(const Json& done, Reference reference) {
     if (reference == Reference::Mirror) {
         return "lens map of " + text(done, "rig") + ": " +
                std::to_string(done.at("spots").get<int>()) + " mirror spots, " +
                fixed(done.at("rms_px").get<double>(), 3) + " px rms, worst " +
-               fixed(done.at("worst_px").get<double>(), 3) + " px";
+               fixed(done.at("worst_px").get<double>(), 3) + " px; " + glareLine(done);
     }
-    return std::string(reference == Reference::White ? "white" : "black") + " reference of " +
-           text(done, "rig") + ": " + std::to_string(done.at("states").get<int>()) + " states in " +
+    return nameOf(reference) + " reference of " + text(done, "rig") + ": " +
+           std::to_string(done.at("states").get<int>()) + " states in " +
            seconds(done, "rig_seconds") + " on the rig";
 }
 
@@ -102,8 +114,7 @@ Result<void> copy(const DaemonClient& client,
 }  // namespace
 
 Result<void> calibrate(const CommonOptions& common, Reference reference) {
-    const char* names[] = {"mirror", "black", "white"};
-    const std::string name = names[static_cast<int>(reference)];
+    const std::string name = nameOf(reference);
     const DaemonClient client(common.socketPath());
     const Json request{{"kind", "calibrate-" + name}};
     const auto done = FollowedJob(common, client, name).run(request.dump());

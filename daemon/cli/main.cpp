@@ -80,8 +80,9 @@ void Program::addSim() {
         command(*sim, "place", "put a reference or a sample under the simulated rig", [this] {
             return simPlace(common, place);
         });
-    sub->add_option(
-           "what", place.what, "black, white, mirror, nothing, a file, model:SPEC or sample:NAME")
+    sub->add_option("what",
+                    place.what,
+                    "black, white, zero, mirror, nothing, a file, model:SPEC or sample:NAME")
         ->required();
     sub->add_option(
         "--tilt-x", place.tiltXDegrees, "wedge of the mirror or a model: about x, degrees");
@@ -116,7 +117,8 @@ void Program::addSim() {
 }
 
 void Program::addCalibration() {
-    CLI::App* parent = app.add_subcommand("calibrate", "take a reference: mirror, black or white");
+    CLI::App* parent =
+        app.add_subcommand("calibrate", "take a reference: mirror, black, white or zero");
     parent->require_subcommand(1);
     parent->fallthrough();
     const auto add = [&](const std::string& name, const std::string& help, Reference reference) {
@@ -125,6 +127,7 @@ void Program::addCalibration() {
     add("mirror", "the lens map, from a mirror on nine wedges", Reference::Mirror);
     add("black", "dark frames and the black reference", Reference::Black);
     add("white", "the white reference", Reference::White);
+    add("zero", "the zero reference, a light trap (optional)", Reference::Zero);
 
     CLI::App* sub = command(
         app, "verify-white", "how far the white reference has changed", [this]() -> Result<void> {

@@ -189,7 +189,7 @@ RigNow Engine::rigNow() const {
 
 void Engine::publishCalibrations() {
     std::vector<CalibrationDate> dates;
-    for (const std::string kind : {"mirror", "black", "white"}) {
+    for (const std::string kind : {"mirror", "black", "white", "zero"}) {
         const auto newest = store_.newestCalibration(status().serial, kind);
         if (newest && *newest) dates.push_back({kind, (*newest)->dateUtc});
     }

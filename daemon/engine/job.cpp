@@ -6,9 +6,10 @@
 namespace gonio::daemon {
 namespace {
 
-constexpr std::array<std::string_view, 7> kKinds{"calibrate-mirror",
+constexpr std::array<std::string_view, 8> kKinds{"calibrate-mirror",
                                                  "calibrate-black",
                                                  "calibrate-white",
+                                                 "calibrate-zero",
                                                  "verify-white",
                                                  "measure",
                                                  "plan",

@@ -20,6 +20,7 @@ enum class JobKind {
     CalibrateMirror,
     CalibrateBlack,
     CalibrateWhite,
+    CalibrateZero,
     VerifyWhite,
     Measure,
     Plan,        ///< what measuring would take and achieve: pilots only

@@ -90,7 +90,7 @@ Result<std::string> workedOut(const Desk& desk, const Original& before, const Ca
     const Result<proc::SampleSet> sample =
         calibrateSample(*signals,
                         anglesOf(before.sample),
-                        {loaded->lens, loaded->white, loaded->black, *certified, desk.profile},
+                        referencesOf(*loaded, *certified, desk.profile),
                         std::move(info),
                         kAsItWasAccepted);
     if (!sample) return sample.error();

@@ -43,7 +43,7 @@ public:
           onRig_(bench.rig.link().clock()) {}
 
     Result<Json> calibrateMirror();
-    Result<Json> calibrateTile(bool white);
+    Result<Json> calibrateTile(const std::string& kind);
     Result<Json> verifyWhite();
     Result<Json> measure();
     Result<Json> plan();
@@ -73,9 +73,6 @@ private:
         CalibrationSet set;
         LoadedSet records;
         References certified;
-        [[nodiscard]] RigReferences references(const RigProfile& profile) const {
-            return {records.lens, records.white, records.black, certified, profile};
-        }
     };
     [[nodiscard]] Result<Loaded> load() const;
     /// What was planned for the sample, was captured of it, and is achieved by that.
@@ -88,6 +85,7 @@ private:
     [[nodiscard]] Result<void> expectPlaced(const std::string& reference) const;
     Result<void> placeMirror(const proc::Wedge& wedge);
     [[nodiscard]] std::optional<double> celsius() const;
+    [[nodiscard]] RigNow rigNow() const;
     [[nodiscard]] Result<void> checkValidity(const CalibrationSet& set) const;
     [[nodiscard]] Result<void> fitsThisRig(const ReferenceRecord& reference) const;
     [[nodiscard]] Result<ReferenceRecord> reference(const std::string& kind) const;
@@ -138,7 +136,8 @@ Result<Captured> JobRun::capture(const BracketPlan& plan, int darkFrames) {
     if (!mirror) return mirror.error();
     const Result<LensRecord> lens = readLens(*mirror);
     if (!lens) return lens.error();
-    const Bench bench = measuring();
+    Bench bench = measuring();
+    bench.glare = lens->glare;
     bench_.monitor.begin(placementSteps(bench));
     Result<Captured> captured = measurePlacement(bench, lens->fit.map, plan, darkFrames);
     if (!captured) return captured;
@@ -193,12 +192,16 @@ std::optional<double> JobRun::celsius() const {
     return status ? driver::celsius(status->temperature[0]) : std::nullopt;
 }
 
+RigNow JobRun::rigNow() const {
+    return {.serial = serial_,
+            .profileHash = bench_.profile.hash,
+            .celsius = celsius(),
+            .dateUtc = bench_.utcNow()};
+}
+
 /// Quality error for calibrations that are no longer good.
 Result<void> JobRun::checkValidity(const CalibrationSet& set) const {
-    const RigNow now{.serial = serial_,
-                     .profileHash = bench_.profile.hash,
-                     .celsius = celsius(),
-                     .dateUtc = bench_.utcNow()};
+    const RigNow now = rigNow();
     for (const CalibrationRecord* one : {&set.mirror, &set.black, &set.white}) {
         const std::string why = whyNot(*one, now, bench_.profile.validity);
         if (why.empty()) continue;
@@ -240,26 +243,34 @@ Result<Json> JobRun::calibrateMirror() {
                 {"spots", lens->spots},
                 {"rms_px", lens->fit.rmsPixels},
                 {"worst_px", lens->fit.worstPixels},
+                {"glare_share", lens->glare ? Json(lens->glare->share()) : Json(nullptr)},
+                {"glare_u_share", lens->glare ? Json(lens->glare->uShare) : Json(nullptr)},
                 {"rig_seconds", onRig_.elapsed().count()},
                 {"file", kept->file.string()}};
 }
 
-Result<Json> JobRun::calibrateTile(bool white) {
-    const std::string kind = white ? "white" : "black";
+/// A white is held against the black, and so is a light trap: it must be darker.
+Result<void> checkAgainst(const ReferenceRecord& black,
+                          const PlacementSignals& signals,
+                          const std::string& kind) {
+    if (kind == "white") return checkWhite(signals, black.signals);
+    return kind == "zero" ? checkZero(signals, black.signals) : Result<void>();
+}
+
+Result<Json> JobRun::calibrateTile(const std::string& kind) {
+    const bool white = kind == "white";
     if (Result<void> placed = expectPlaced(kind); !placed) return placed.error();
     // Looked for before minutes go into what would be refused without it.
     const Result<ReferenceRecord> black =
-        white ? reference("black") : Result<ReferenceRecord>(ReferenceRecord{});
+        kind != "black" ? reference("black") : Result<ReferenceRecord>(ReferenceRecord{});
     if (!black) return black.error();
     Result<Captured> captured = capture(white ? kWhiteBracket : kBlackBracket, 2 * kDarkFrames);
     if (!captured) return captured.error();
     if (Result<void> steady = checkSteady(*captured, "calibrate " + kind + " again"); !steady) {
         return steady.error();
     }
-    if (white) {
-        if (Result<void> bright = checkWhite(captured->signals, black->signals); !bright) {
-            return bright.error();
-        }
+    if (Result<void> good = checkAgainst(*black, captured->signals, kind); !good) {
+        return good.error();
     }
     proc::SampleInfo about = info(kind);
     about.truthSpec.clear();
@@ -372,9 +383,11 @@ Result<JobRun::Loaded> JobRun::load() const {
     Result<CalibrationSet> set = newestSet(bench_.store, serial_);
     if (!set) return set.error();
     if (Result<void> good = checkValidity(*set); !good) return good.error();
+    leaveOutStaleZero(*set, rigNow(), bench_.profile.validity);
     auto records = whileAlive([&] { return loadSet(bench_.store, *set); });
     if (!records) return records.error();
-    for (const ReferenceRecord* one : {&records->black, &records->white}) {
+    for (const ReferenceRecord* one :
+         {&records->black, &records->white, records->zero ? &*records->zero : &records->black}) {
         if (Result<void> fits = fitsThisRig(*one); !fits) return fits.error();
     }
     Result<References> certified = loadReferences(bench_.profile);
@@ -383,7 +396,8 @@ Result<JobRun::Loaded> JobRun::load() const {
 }
 
 Result<JobRun::Taken> JobRun::take(const RigReferences& references) {
-    const Bench bench = measuring();
+    Bench bench = measuring();
+    bench.glare = references.lens.glare;
     PlannedRun run(bench, references, request_.goal.plan());
     bench_.monitor.begin(run.steps());
     const Result<const proc::Plan*> plan = run.plan();
@@ -404,8 +418,9 @@ Result<JobRun::Taken> JobRun::take(const RigReferences& references) {
 Result<Json> JobRun::plan() {
     const Result<Loaded> loaded = load();
     if (!loaded) return loaded.error();
-    const Bench bench = measuring();
-    const RigReferences references = loaded->references(bench_.profile);
+    Bench bench = measuring();
+    const RigReferences references =
+        referencesOf(loaded->records, loaded->certified, bench_.profile);
     PlannedRun run(bench, references, request_.goal.plan());
     bench_.monitor.begin(run.steps());
     const Result<const proc::Plan*> plan = run.plan();
@@ -421,7 +436,8 @@ Result<Json> JobRun::plan() {
 Result<Json> JobRun::measure() {
     const Result<Loaded> loaded = load();
     if (!loaded) return loaded.error();
-    const RigReferences references = loaded->references(bench_.profile);
+    const RigReferences references =
+        referencesOf(loaded->records, loaded->certified, bench_.profile);
     Result<Taken> taken = take(references);
     if (!taken) return taken.error();
     Captured* const captured = &taken->captured;
@@ -480,8 +496,9 @@ Result<Json> JobRun::measure() {
 Result<Json> run(JobRun& job, JobKind kind) {
     switch (kind) {
         case JobKind::CalibrateMirror: return job.calibrateMirror();
-        case JobKind::CalibrateBlack: return job.calibrateTile(false);
-        case JobKind::CalibrateWhite: return job.calibrateTile(true);
+        case JobKind::CalibrateBlack: return job.calibrateTile("black");
+        case JobKind::CalibrateWhite: return job.calibrateTile("white");
+        case JobKind::CalibrateZero: return job.calibrateTile("zero");
         case JobKind::VerifyWhite: return job.verifyWhite();
         case JobKind::Measure: return job.measure();
         case JobKind::Plan: return job.plan();

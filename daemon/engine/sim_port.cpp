@@ -65,9 +65,10 @@ Result<void> check(const PlaceRequest& request) {
     const bool named = isReference(request.what) || request.what.starts_with("model:") ||
                        request.what.starts_with("sample:") || fs::path(request.what).is_absolute();
     if (!named) {
-        return refused("'" + request.what +
-                       "': wanted black, white, mirror, nothing, model:SPEC, sample:NAME or an "
-                       "absolute path");
+        return refused(
+            "'" + request.what +
+            "': wanted black, white, zero, mirror, nothing, model:SPEC, sample:NAME or an "
+            "absolute path");
     }
     if (!request.serial) return {};
     const std::string& serial = *request.serial;

@@ -14,7 +14,7 @@ namespace gonio::daemon {
 
 /// Empty members are kept as they are.
 struct PlaceRequest {
-    std::string what;  ///< black, white, mirror, nothing, an absolute path, model: or sample:
+    std::string what;  ///< black, white, zero, mirror, nothing, an absolute path, model: or sample:
     double tiltXDegrees = 0;  ///< turns the surface about x
     double tiltYDegrees = 0;
     double wavinessDegrees = 0;  ///< this and the next four: sim/sample_errors.h

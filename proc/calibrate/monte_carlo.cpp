@@ -40,7 +40,7 @@ public:
             *signal *= 1 + best_.uLight * normal_(random_);
         }
         drawn.fWhite *= 1 + best_.uWhite * normal_(random_);
-        drawn.fBlack *= 1 + best_.uBlack * normal_(random_);
+        drawn.fBlack += best_.uBlack * normal_(random_);
         const double x = best_.uAngle * normal_(random_), y = best_.uAngle * normal_(random_);
         return best_.shape.at(drawn.f(), x, y) + best_.uElse * normal_(random_);
     }

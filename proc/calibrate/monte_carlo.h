@@ -24,7 +24,8 @@ struct CellInputs {
     double sample = 0, white = 0, black = 0;  ///< signals
     double sampleVariance = 0, whiteVariance = 0, blackVariance = 0;
     double fWhite = 0, fBlack = 0;  ///< 1/sr
-    double uWhite = 0, uBlack = 0;  ///< relative
+    double uWhite = 0;              ///< relative
+    double uBlack = 0;              ///< 1/sr
     double uLight = 0;              ///< relative, of each capture
     double uAngle = 0;              ///< radians, about either axis
     double uElse = 0;               ///< 1/sr: all that first order knows and this does not

@@ -94,6 +94,17 @@ ReferenceTable ReferenceTable::lambertian(const std::string& name,
     return table;
 }
 
+ReferenceTable ReferenceTable::lightTrap(const std::string& name, double uAbsolute) {
+    ReferenceTable table(
+        {.name = name,
+         .citation = "f = 0 in every direction, to " + shortest(uAbsolute) + " / sr",
+         .licence = {},
+         .uAbsolute = uAbsolute},
+        {{.incidence = 0_deg, .theta = {0_deg}, .phi = {0_deg}, .f = {LedBands{}}}});
+    table.everywhere_ = true;
+    return table;
+}
+
 Answer ReferenceTable::answer(const LightView& pair) const {
     if (!pair.in.aboveHorizon() || !pair.out.aboveHorizon()) {
         return Answer::none({Flag::BelowHorizon}, Source::Measured);
@@ -127,7 +138,11 @@ Answer ReferenceTable::answer(const LightView& pair) const {
         answer.source = Source::Interpolated;
     }
     answer.uRandom = answer.f * certificate_.uPerDirection;
-    answer.uSystematic = answer.f * certificate_.uCommon;
+    answer.uSystematic = LedBands{};
+    for (Band b : kBands) {
+        (*answer.uSystematic)[b] =
+            std::hypot(answer.f[b] * certificate_.uCommon, certificate_.uAbsolute);
+    }
     return answer;
 }
 

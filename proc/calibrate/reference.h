@@ -13,13 +13,15 @@
 
 namespace gonio::proc {
 
-/// What is known of a reference besides its table. Uncertainties are relative, k = 1.
+/// What is known of a reference besides its table. Uncertainties are k = 1, relative to f where
+/// they do not say otherwise.
 struct Certificate {
     std::string name;
     std::string citation;
     std::string licence;
     double uCommon = 0;        ///< one error for all directions and bands
     double uPerDirection = 0;  ///< independent from direction to direction
+    double uAbsolute = 0;      ///< one error for all directions and bands, 1/sr
 };
 
 /// f over theta_o x phi_o for one incidence.
@@ -41,6 +43,9 @@ public:
     [[nodiscard]] static ReferenceTable lambertian(const std::string& name,
                                                    double reflectance,
                                                    double relativeUncertainty);
+
+    /// f = 0 in all directions, known to `uAbsolute`, 1/sr: a zero reference.
+    [[nodiscard]] static ReferenceTable lightTrap(const std::string& name, double uAbsolute);
 
     [[nodiscard]] Answer answer(const LightView& pair) const override;
     [[nodiscard]] const Certificate& certificate() const { return certificate_; }

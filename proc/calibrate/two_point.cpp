@@ -15,39 +15,39 @@ namespace {
 
 constexpr double kMinContrastSigmas = 5;
 
-/// Absolute standard uncertainties of one cell, in 1/sr, in the order of kComponents.
+/// Absolute standard uncertainties of one cell, in 1/sr, in the order of components().
 enum Component : std::size_t {
     SampleNoise,
     WhiteNoise,
-    BlackNoise,
+    LowerNoise,
     WhiteCommon,
     WhitePerDirection,
-    BlackCommon,
+    LowerCommon,
     ExposureRatio,
     NonLinearity,
     Geometry,
     LedDrift,
+    Glare,  // from here on, Monte Carlo adds them as they are
     ComponentCount
 };
 using Contributions = std::array<double, ComponentCount>;
 
-struct ComponentKind {
-    const char* name;
-    char type;
-    Correlation correlation;
-};
-constexpr std::array<ComponentKind, ComponentCount> kComponents{{
-    {"noise of the sample's frames", 'A', Correlation::PerCell},
-    {"noise of the white reference's frames", 'A', Correlation::PerCell},
-    {"noise of the black reference's frames", 'A', Correlation::PerCell},
-    {"white reference, common", 'B', Correlation::Common},
-    {"white reference, per direction", 'B', Correlation::PerCell},
-    {"black reference", 'B', Correlation::Common},
-    {"exposure ratio", 'B', Correlation::PerState},
-    {"linearity", 'B', Correlation::Common},
-    {"direction of the cell (lens map)", 'A', Correlation::PerState},
-    {"LED drift", 'B', Correlation::PerState},
-}};
+/// The components without their sizes; `lower`: "black" or "zero".
+Budget components(const std::string& lower) {
+    return {
+        {"noise of the sample's frames", 'A', Correlation::PerCell},
+        {"noise of the white reference's frames", 'A', Correlation::PerCell},
+        {"noise of the " + lower + " reference's frames", 'A', Correlation::PerCell},
+        {"white reference, common", 'B', Correlation::Common},
+        {"white reference, per direction", 'B', Correlation::PerCell},
+        {lower + " reference", 'B', Correlation::Common},
+        {"exposure ratio", 'B', Correlation::PerState},
+        {"linearity", 'B', Correlation::Common},
+        {"direction of the cell (lens map)", 'A', Correlation::PerState},
+        {"LED drift", 'B', Correlation::PerState},
+        {"glare", 'B', Correlation::PerState},
+    };
+}
 
 double quadrature(const Contributions& u, std::size_t first, std::size_t behind) {
     double sum = 0;
@@ -82,10 +82,14 @@ void addSizes(Budget& budget,
     const Certificate& white = references.white.certificate();
     budget[SampleNoise].size = medianNoise(sample, samples);
     budget[WhiteNoise].size = medianNoise(references.whiteSignal, samples);
-    budget[BlackNoise].size = medianNoise(references.blackSignal, samples);
+    budget[LowerNoise].size = medianNoise(references.blackSignal, samples);
     budget[WhiteCommon].size = white.uCommon;
     budget[WhitePerDirection].size = white.uPerDirection;
-    budget[BlackCommon].size = references.black.certificate().uCommon;
+    budget[LowerCommon].size = references.black.certificate().uCommon;
+    if (const double zero = references.black.certificate().uAbsolute; zero > 0) {
+        budget[LowerCommon].size = zero;
+        budget[LowerCommon].unit = "1/sr";
+    }
     budget[ExposureRatio].size = rig.exposureRatio;
     budget[NonLinearity].size = rig.linearity;
     budget[Geometry].size = medianDegrees(rig.angle, samples);
@@ -106,6 +110,7 @@ struct Measurement {
     [[nodiscard]] CellInputs inputsOf(std::size_t cell, const CellSamples& samples) const {
         const LightView pair{.in = wi, .out = CellGrid::centre(cell)};
         const Certificate& white = references.white.certificate();
+        const Answer black = references.black.answer(pair);
         return {.sample = sample.signal[cell],
                 .white = references.whiteSignal.signal[cell],
                 .black = references.blackSignal.signal[cell],
@@ -113,9 +118,9 @@ struct Measurement {
                 .whiteVariance = references.whiteSignal.variance[cell],
                 .blackVariance = references.blackSignal.variance[cell],
                 .fWhite = references.white.answer(pair).f[band],
-                .fBlack = references.black.answer(pair).f[band],
+                .fBlack = black.f[band],
                 .uWhite = std::hypot(white.uCommon, white.uPerDirection),
-                .uBlack = references.black.certificate().uCommon,
+                .uBlack = (*black.uSystematic)[band],
                 .uLight = std::hypot(rig.ledDrift, rig.exposureRatio, rig.linearity),
                 .uAngle = rig.angle(pair.out).value(),
                 .uElse = 0,
@@ -123,18 +128,17 @@ struct Measurement {
     }
 };
 
-Budget summary(const CellSamples& samples, const std::vector<Contributions>& contributions) {
-    Budget budget;
+Budget summary(const CellSamples& samples,
+               const std::vector<Contributions>& contributions,
+               const std::string& lower) {
+    Budget budget = components(lower);
     for (std::size_t i = 0; i < ComponentCount; ++i) {
         std::vector<double> relative;
         for (std::size_t cell = 0; cell < samples.size(); ++cell) {
             if (!samples.present(cell) || samples.f[cell] == 0) continue;
             relative.push_back(contributions[cell][i] / std::abs(samples.f[cell]));
         }
-        budget.push_back({.name = kComponents[i].name,
-                          .type = kComponents[i].type,
-                          .correlation = kComponents[i].correlation,
-                          .medianRelative = median(std::move(relative))});
+        budget[i].medianRelative = median(std::move(relative));
     }
     return budget;
 }
@@ -182,16 +186,19 @@ Calibrated calibrate(const CellSignal& sample,
             Contributions& u = contributions[cell];
             u[SampleNoise] = std::abs(gain) * std::sqrt(sample.variance[cell]);
             u[WhiteNoise] = std::abs(gain * q) * std::sqrt(white.variance[cell]);
-            u[BlackNoise] = std::abs(gain * (1 - q)) * std::sqrt(black.variance[cell]);
+            u[LowerNoise] = std::abs(gain * (1 - q)) * std::sqrt(black.variance[cell]);
             u[WhiteCommon] = std::abs(q * fw) * references.white.certificate().uCommon;
             u[WhitePerDirection] = std::abs(q * fw) * references.white.certificate().uPerDirection;
-            u[BlackCommon] = std::abs((1 - q) * fb) * references.black.certificate().uCommon;
+            u[LowerCommon] = std::abs(1 - q) * (*certifiedBlack.uSystematic)[band];
             const double byLight = std::abs(gain) * std::hypot(sample.signal[cell],
                                                                q * white.signal[cell],
                                                                (1 - q) * black.signal[cell]);
             u[ExposureRatio] = rig.exposureRatio * byLight;
             u[NonLinearity] = rig.linearity * byLight;
             u[LedDrift] = rig.ledDrift * byLight;
+            u[Glare] = std::abs(gain) * std::hypot(sample.uGlare[cell],
+                                                   q * white.uGlare[cell],
+                                                   (1 - q) * black.uGlare[cell]);
             out.uRandom[cell] = quadrature(u, SampleNoise, WhiteCommon);
         }
     });
@@ -208,7 +215,7 @@ Calibrated calibrate(const CellSignal& sample,
             out.uSystematic[cell] = quadrature(u, WhiteCommon, ComponentCount);
             const double total = std::hypot(out.uRandom[cell], out.uSystematic[cell]);
             if (monteCarlo.draws == 0 && !firstOrderFails(inputs, total)) continue;
-            inputs.uElse = quadrature(u, LedDrift + 1, ComponentCount);
+            inputs.uElse = quadrature(u, Glare, ComponentCount);
             const int draws = monteCarlo.draws > 0 ? monteCarlo.draws : kAutomaticDraws;
             const PropagatedUncertainty better = propagate(inputs, draws, monteCarlo.seed + cell);
             uRandom[cell] = better.random;
@@ -223,7 +230,7 @@ Calibrated calibrate(const CellSignal& sample,
         }
     }
     result.propagated = propagated;
-    result.budget = summary(out, contributions);
+    result.budget = summary(out, contributions, references.black.certificate().name);
     addSizes(result.budget, out, sample, references, rig);
     return result;
 }

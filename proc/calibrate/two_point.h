@@ -2,10 +2,18 @@
 // Two-reference calibration (radiometry.md 2.3). With S, S_w, S_b the binned signals of sample,
 // white and black, and f_w, f_b what the certificates say:
 //     f = f_b + (f_w - f_b) q,   q = (S - S_b) / (S_w - S_b).
-// Uncertainties are first order. Random: the noise of the three signals. Systematic: white, common
-// and per direction, by q f_w; black by (1 - q) f_b; the lens map's angle by the local slope of f;
-// and the drift of the LED. Each of the three captures was lit with a relative error of its own,
-// independent, of the size d that the rig is known for, and a signal is as wrong as its light:
+// With a zero reference (a light trap, f_z = 0 known to an absolute u_z) that takes the black's
+// place:
+//     f = f_w q,   q = (S - S_z) / (S_w - S_z),   and (1 - q) u_z stands where (1 - q) u(f_b)
+//     stood.
+// The black is then no input. Weighted in by inverse variance it would take 5 % off u_z at best
+// (3.2e-5 against 1e-5 / sr), and give up the one independent witness of the trap (radiometry.md
+// 0.4, 5.1). Uncertainties are first order. Random: the noise of the three signals. Systematic:
+// white, common and per direction, by q f_w; black or zero by (1 - q) u(f_b); the lens map's angle
+// by the local slope of f; the glare that the three signals were put right by, known to g, h and k,
+// by |df/dS| sqrt(g^2 + (q h)^2 + ((1 - q) k)^2); and the drift of the LED. Each of the three
+// captures was lit with a relative error of its own, independent, of the size d that the rig is
+// known for, and a signal is as wrong as its light:
 //     u = d |df/dS| sqrt(S^2 + (q S_w)^2 + ((1 - q) S_b)^2),
 // sqrt(2) d f where sample and white are far brighter than black; all cells of a state share it.
 // What is left of the sensor's non-linearity and of the exposures' ratios changes with brightness:
@@ -30,7 +38,8 @@
 
 namespace gonio::proc {
 
-/// What one state's signal is held against.
+/// What one state's signal is held against: the white, and the black or the zero reference, after
+/// whose certificate's name the budget calls it.
 struct References {
     const CellSignal& whiteSignal;
     const CellSignal& blackSignal;

@@ -64,7 +64,8 @@ CellSignal CellSignal::missing(std::size_t cells) {
     return {std::vector(cells, nan),
             std::vector(cells, nan),
             std::vector(cells, 0.0),
-            std::vector(cells, Flags{})};
+            std::vector(cells, Flags{}),
+            std::vector(cells, 0.0)};
 }
 
 Binning::Binning(const LensMap& map, const Window& window, Radians field) : window_(window) {
@@ -130,22 +131,22 @@ double Binning::pixelsIn(std::size_t cell) const {
     return sum;
 }
 
-CellSignal Binning::bin(const MergedState& state) const {
-    assert(state.radiance.size() == window_.sent());
+CellSignal Binning::bin(const Image<float>& radiance, const Image<float>& variance) const {
+    assert(radiance.size() == window_.sent() && variance.size() == radiance.size());
+    const Picture picture{.radiance = radiance.pixels(), .variance = variance.pixels()};
     CellSignal out = CellSignal::missing(CellGrid::count());
     parallelFor(CellGrid::count(), [&](IndexRange cells) {
-        for (std::size_t cell = cells.begin; cell < cells.end; ++cell) bin(state, cell, out);
+        for (std::size_t cell = cells.begin; cell < cells.end; ++cell) bin(picture, cell, out);
     });
     return out;
 }
 
-void Binning::bin(const MergedState& state, std::size_t cell, CellSignal& out) const {
+void Binning::bin(const Picture& picture, std::size_t cell, CellSignal& out) const {
     if (CellGrid::place(cell).row >= visibleRows_) {
         out.flags[cell].set(Flag::Blocked);
         return;
     }
-    const std::span<const float> radiance = state.radiance.pixels();
-    const std::span<const float> noise = state.variance.pixels();
+    const auto& [radiance, noise] = picture;
     double signal = 0;
     double variance = 0;
     double used = 0;       // steradian

@@ -28,6 +28,8 @@ struct CellSignal {
     std::vector<double> variance;
     std::vector<double> nEff;  ///< effective number of independent pixels
     std::vector<Flags> flags;  ///< Measured, or why not
+    /// Standard uncertainty of the glare that was taken off (glare.h): one error for all cells.
+    std::vector<double> uGlare;
 
     [[nodiscard]] static CellSignal missing(std::size_t cells);
     [[nodiscard]] std::size_t size() const { return signal.size(); }
@@ -40,7 +42,10 @@ public:
     Binning(const LensMap& map, const Window& window, Radians field);
 
     /// The picture must have the window's size.
-    [[nodiscard]] CellSignal bin(const MergedState& state) const;
+    [[nodiscard]] CellSignal bin(const MergedState& state) const {
+        return bin(state.radiance, state.variance);
+    }
+    [[nodiscard]] CellSignal bin(const Image<float>& radiance, const Image<float>& variance) const;
     /// Sensor area inside the cell, in pixels of the window.
     [[nodiscard]] double pixelsIn(std::size_t cell) const;
 
@@ -50,7 +55,10 @@ private:
         float area = 0;  // of the pixel inside the cell, 0..1
     };
     [[nodiscard]] std::span<const Share> sharesOf(std::size_t cell) const;
-    void bin(const MergedState& state, std::size_t cell, CellSignal& out) const;
+    struct Picture {
+        std::span<const float> radiance, variance;
+    };
+    void bin(const Picture& picture, std::size_t cell, CellSignal& out) const;
 
     Window window_;
     std::vector<Share> shares_;            // sorted by cell

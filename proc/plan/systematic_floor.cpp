@@ -27,7 +27,10 @@ SystematicFloor SystematicFloor::typical(Zero zero) {
         {"LED drift", Correlation::PerState, std::sqrt(2.0) * kDriftPerCapture, 0},
         {"exposure ratio", Correlation::PerState, kExposureRatio, 0},
         {"linearity", Correlation::Common, kLinearity, 0},
-        {"black reference", Correlation::Common, 0, black},
+        {zero == Zero::ZeroReference ? "zero reference" : "black reference",
+         Correlation::Common,
+         0,
+         black},
     });
 }
 

@@ -26,7 +26,7 @@ CellInputs bright() {
             .fWhite = 0.31,
             .fBlack = 3e-4,
             .uWhite = 0.005,
-            .uBlack = 0.1,
+            .uBlack = 3e-5,
             .uLight = 0.002,
             .uAngle = 1e-4,
             .uElse = 2e-4,
@@ -42,7 +42,7 @@ TEST(MonteCarlo, AgreesWithFirstOrderWhereTheEquationIsLinear) {
                                            (1 - q) * (1 - q) * in.blackVariance);
     double systematic = 0;
     for (const double part : {q * in.fWhite * in.uWhite,
-                              (1 - q) * in.fBlack * in.uBlack,
+                              (1 - q) * in.uBlack,
                               in.uLight * gain * in.sample,
                               in.uLight * gain * q * in.white,
                               in.uLight * gain * (1 - q) * in.black,

@@ -83,6 +83,18 @@ TEST(ReferenceTable, LambertianIsTheStatedFallback) {
     EXPECT_EQ(black.certificate().uCommon, 0.1);
 }
 
+TEST(ReferenceTable, ALightTrapIsZeroToItsUncertainty) {
+    const ReferenceTable zero = ReferenceTable::lightTrap("zero", 1e-5);
+    for (const double incidence : {0.0, 37.0, 60.0}) {
+        const Answer answer = zero.answer({at(incidence, 0), at(55, 123)});
+        ASSERT_TRUE(answer.present());
+        for (const Band b : kBands) {
+            EXPECT_EQ(answer.f[b], 0);
+            EXPECT_EQ((*answer.uSystematic)[b], 1e-5);
+        }
+    }
+}
+
 TEST(ReferenceTable, RefusesWhatIsNoTable) {
     EXPECT_FALSE(ReferenceTable::make({.name = "x"}, {}));
     const auto one = [](std::vector<Radians> theta, std::vector<LedBands> f) {

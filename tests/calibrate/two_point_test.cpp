@@ -165,6 +165,39 @@ TEST(TwoPoint, LedDriftCountsTwiceForBrightSamplesAndIsNotRandom) {
     EXPECT_EQ(with.samples.f[cell], without.samples.f[cell]);
 }
 
+TEST(TwoPoint, GlareIsWhatThreeSignalsOfThatErrorDo) {
+    const Tiles tiles;
+    const auto raised = [](CellSignal signal, double error, bool known) {
+        for (std::size_t cell = 0; cell < signal.size(); ++cell) {
+            if (known) signal.uGlare[cell] = error;
+            if (!known) signal.signal[cell] += error;
+        }
+        return signal;
+    };
+    for (const double level : {1e-3, 1.0}) {
+        const CellSignal sample =
+            signalOf([=](const Direction& wo) { return level * slanted(wo); });
+        const CellSamples right = tiles(sample).samples;
+        Tiles budgeted = tiles, white = tiles, black = tiles;
+        budgeted.whiteSignal = raised(tiles.whiteSignal, 3000, true);
+        budgeted.blackSignal = raised(tiles.blackSignal, 100, true);
+        white.whiteSignal = raised(tiles.whiteSignal, 3000, false);
+        black.blackSignal = raised(tiles.blackSignal, 100, false);
+        const Calibrated known = budgeted(raised(sample, 500, true));
+        const CellSamples one = tiles(raised(sample, 500, false)).samples;
+        const CellSamples two = white(sample).samples;
+        const CellSamples three = black(sample).samples;
+        const std::size_t cell = 5000;
+        const double all = std::hypot(one.f[cell] - right.f[cell],
+                                      two.f[cell] - right.f[cell],
+                                      three.f[cell] - right.f[cell]);
+        const double added = std::sqrt(std::pow(known.samples.uSystematic[cell], 2) -
+                                       std::pow(right.uSystematic[cell], 2));
+        EXPECT_NEAR(added / all, 1, 0.01) << level;
+        EXPECT_EQ(known.samples.f[cell], right.f[cell]);
+    }
+}
+
 TEST(TwoPoint, GeometryIsSlopeTimesAngle) {
     const Tiles tiles;
     const Radians u = 0.5_deg;
@@ -175,6 +208,43 @@ TEST(TwoPoint, GeometryIsSlopeTimesAngle) {
                                    std::pow(ideal.samples.uSystematic[cell], 2));
     // d(0.05 x)/dtheta = 0.05 cos(theta).
     EXPECT_NEAR(added, 0.05 * cos(30.5_deg) * u.value(), 1e-5);
+}
+
+/// White, and a light trap of this f, seen by the same rig.
+Calibrated withTrap(const CellSignal& sample, double whiteFactor, double trap) {
+    const ReferenceTable white = ReferenceTable::lambertian("white", 0.98, 0.005);
+    const ReferenceTable zero = ReferenceTable::lightTrap("zero", 1e-5);
+    const CellSignal whiteSignal =
+        signalOf([=](const Direction&) { return 0.98 / kPi * whiteFactor; });
+    const CellSignal zeroSignal = signalOf([=](const Direction&) { return trap; });
+    return calibrate(
+        sample, {whiteSignal, zeroSignal, white, zero}, kLight, Band::G, {[](const Direction&) {
+            return 0_deg;
+        }});
+}
+
+TEST(TwoPoint, AZeroReferenceTakesTheBlacksPlace) {
+    for (const double level : {1e-3, 1e-2, 0.3}) {
+        const CellSignal sample = signalOf([=](const Direction&) { return level; });
+        const CellSamples right = withTrap(sample, 1, 0).samples;
+        const CellSamples trapOff = withTrap(sample, 1, 1e-5).samples;
+        const CellSamples whiteOff = withTrap(sample, 1.005, 0).samples;
+        const CellSamples black = Tiles()(sample).samples;
+        const std::size_t cell = 5000;
+        EXPECT_NEAR(right.f[cell], level, 1e-12);
+        const double both =
+            std::hypot(trapOff.f[cell] - right.f[cell], whiteOff.f[cell] - right.f[cell]);
+        EXPECT_NEAR(both / right.uSystematic[cell], 1, 0.01) << level;
+        EXPECT_LE(right.uSystematic[cell], 1.001 * black.uSystematic[cell]) << level;
+    }
+    const Budget budget = withTrap(signalOf(slanted), 1, 0).budget;
+    const auto has = [&](const std::string& name) {
+        return std::any_of(
+            budget.begin(), budget.end(), [&](const auto& one) { return one.name == name; });
+    };
+    EXPECT_TRUE(has("zero reference"));
+    EXPECT_TRUE(has("noise of the zero reference's frames"));
+    EXPECT_FALSE(has("black reference"));
 }
 
 TEST(TwoPoint, NegativeValuesSurviveAndAreBelowNoise) {
@@ -210,7 +280,7 @@ TEST(TwoPoint, AMissingReferenceCellIsMissing) {
 TEST(TwoPoint, BudgetNamesEveryComponent) {
     const Tiles tiles;
     const Budget budget = tiles(signalOf(slanted), 0.1_deg, 0.002).budget;
-    ASSERT_EQ(budget.size(), 10U);
+    ASSERT_EQ(budget.size(), 11U);
     for (const BudgetComponent& component : budget) {
         EXPECT_TRUE(component.type == 'A' || component.type == 'B');
         EXPECT_FALSE(name(component.correlation).empty());

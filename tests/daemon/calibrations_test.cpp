@@ -120,6 +120,35 @@ TEST_F(CalibrationsInStore, SetIsFoundByItsNameOrOneNumberInThePlaceOfItsKind) {
     EXPECT_EQ(parseSet(*store, "1", set)->id(), "1+2+7");
 }
 
+TEST_F(CalibrationsInStore, AZeroReferenceIsTheFourthNumber) {
+    keep("R1", "zero");  // 8
+    const auto newest = newestSet(*store, "R1");
+    ASSERT_TRUE(newest) << newest.error().message;
+    EXPECT_EQ(newest->id(), "1+2+7+8");
+    EXPECT_EQ(parseSet(*store, "1+2+7+8", set)->id(), "1+2+7+8");
+    EXPECT_EQ(parseSet(*store, "8", set)->id(), "1+2+7+8") << "one number adds it";
+    EXPECT_EQ(parseSet(*store, "3", *newest)->id(), "1+2+3+8");
+    EXPECT_EQ(parseSet(*store, "1+2+7", *newest)->id(), "1+2+7") << "three say: without it";
+    for (const char* bad : {"1+2+8", "1+2+8+7", "1+8", "1+2+7+8+8"}) {
+        expectRefused(bad, ErrorKind::Usage);
+    }
+}
+
+TEST_F(CalibrationsInStore, AStaleZeroReferenceIsLeftOut) {
+    keep("R1", "zero");
+    auto newest = newestSet(*store, "R1");
+    ASSERT_TRUE(newest && newest->zero);
+    newest->zero->dateUtc = "2026-03-01T11:00:00Z";
+    newest->zero->profileHash = kNow.profileHash;
+    newest->zero->celsius = kNow.celsius;
+    leaveOutStaleZero(*newest, kNow, {});
+    EXPECT_TRUE(newest->zero);
+    newest->zero->dateUtc = "2026-02-28T11:59:59Z";
+    leaveOutStaleZero(*newest, kNow, {});
+    EXPECT_FALSE(newest->zero);
+    EXPECT_EQ(newest->id(), "1+2+7");
+}
+
 TEST_F(CalibrationsInStore, WhatIsNoSetIsRefused) {
     for (const char* bad : {"",
                             "x",

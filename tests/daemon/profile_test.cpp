@@ -94,6 +94,19 @@ TEST_F(Profile, EveryKeyIsAskedForByName) {
     }
 }
 
+TEST_F(Profile, ALightTrapIsKnownTo1eMinus5UnlessTheFileSaysOtherwise) {
+    EXPECT_EQ(read(kGood)->zeroUncertainty, 1e-5);
+    std::string text(kGood);
+    const std::size_t at = text.find("black_reflectance");
+    ASSERT_NE(at, std::string::npos);
+    text.insert(at, "zero_uncertainty_per_sr = 3e-6\n");
+    const auto profile = read(text);
+    ASSERT_TRUE(profile) << profile.error().message;
+    EXPECT_EQ(profile->zeroUncertainty, 3e-6);
+    text.replace(text.find("3e-6"), 4, "0.0");
+    EXPECT_NE(read(text).error().message.find("zero_uncertainty_per_sr"), std::string::npos);
+}
+
 TEST_F(Profile, RefusesAnotherSchemaAndSaysWhichItSaw) {
     std::string text = without("schema");
     text.insert(0, "schema = \"gonio/rig/2\"\n");

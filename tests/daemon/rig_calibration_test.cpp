@@ -26,7 +26,13 @@ LensRecord lensRecord() {
                     .rmsPixels = 0.02,
                     .worstPixels = 0.05},
             .spots = 20,
-            .dateUtc = "2026-01-02T03:04:05Z"};
+            .dateUtc = "2026-01-02T03:04:05Z",
+            .glare = proc::GlareSpread{.everywhere = 0.001,
+                                       .halo = 0.002,
+                                       .radius = 70.5,
+                                       .exponent = 1.25,
+                                       .uShare = 1e-5,
+                                       .uRelative = 0.3}};
 }
 
 /// One LED whose cells hold their own number; the last cell is blocked.
@@ -36,6 +42,7 @@ PlacementSignals signals() {
         signal.signal[cell] = static_cast<double>(cell) - 5;
         signal.variance[cell] = 4;
         signal.nEff[cell] = 40;
+        signal.uGlare[cell] = 0.25;
         signal.flags[cell] = Flags{Flag::Measured};
     }
     signal.flags.back() = Flags{Flag::Blocked};

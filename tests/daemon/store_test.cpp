@@ -209,13 +209,15 @@ TEST(SimBench, PlacesWhatTheStateNames) {
         const auto placement = makePlacement(state, *store);
         EXPECT_TRUE(placement) << placement.error().message;
         EXPECT_EQ(placement->surface == nullptr,
-                  placement->role == sim::Role::Nothing || placement->role == sim::Role::Mirror);
+                  placement->role == sim::Role::Nothing || placement->role == sim::Role::Mirror ||
+                      placement->role == sim::Role::Zero);
         return placement->role;
     };
     EXPECT_EQ(role("nothing"), sim::Role::Nothing);
     EXPECT_EQ(role("mirror"), sim::Role::Mirror);
     EXPECT_EQ(role("white"), sim::Role::White);
     EXPECT_EQ(role("black"), sim::Role::Black);
+    EXPECT_EQ(role("zero"), sim::Role::Zero);
     EXPECT_EQ(role("model:lambert,albedo=0.5"), sim::Role::Sample);
     SimState state;
     state.placed = "no-such-file.bsdf";

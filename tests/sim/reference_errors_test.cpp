@@ -14,6 +14,7 @@ TEST(ReferenceErrors, NoneChangesNothing) {
     const ReferenceErrors none;
     EXPECT_EQ(none.white(2, Band::B, Direction()), 1);
     EXPECT_EQ(none.black(), 1);
+    EXPECT_EQ(none.zero(), 0);
 }
 
 TEST(ReferenceErrors, StratifiedRunsTakeEachQuantileOnce) {
@@ -95,14 +96,17 @@ TEST(ReferenceErrors, ReadsItsThreeWords) {
 
 TEST(ReferenceErrors, TilesAreWrongByWhatTheirCertificatesAllow) {
     constexpr int kTiles = 4000;
-    double black = 0, white = 0;
+    double black = 0, white = 0, zero = 0;
     for (std::uint64_t seed = 0; seed < kTiles; ++seed) {
         const ReferenceErrors errors = ReferenceErrors::random(seed);
         black += std::pow(errors.black() - 1, 2);
+        zero += std::pow(errors.zero(), 2);
+        EXPECT_GE(errors.zero(), 0) << "a trap gives no light less than none";
         white += std::pow(errors.white(0, Band::R, Direction()) - 1, 2);
     }
     // A variance of n samples is known to sqrt(2 / n) = 2.2 %, its root to half of that.
     EXPECT_NEAR(std::sqrt(black / kTiles), 0.1, 5 * 0.1 * 0.011);
+    EXPECT_NEAR(std::sqrt(zero / kTiles), 1e-5, 5 * 1e-5 * 0.011);
     EXPECT_NEAR(std::sqrt(white / kTiles), std::hypot(0.005, 0.003), 5 * 0.0058 * 0.011);
 }
 

@@ -126,6 +126,18 @@ TEST(Stage, OnlyTheTilesHaveErrorsOfTheirCertificates) {
     });
 }
 
+TEST(Stage, ALightTrapLeavesWhatItsDrawSays) {
+    const ReferenceErrors errors = ReferenceErrors::random(5);
+    const Placement trap{.role = Role::Zero, .surface = nullptr, .wedge = {}};
+    EXPECT_EQ(ratesOf(trap, 2), ratesOf({}, 2));
+    const RateImages rates = ratesOf(trap, 2, errors);
+    forEachPixel([&](int x, int y, const Direction& wo) {
+        const double wanted =
+            ledRate(2, Band::B) * lensAt(wo) * (errors.zero() * wo.z() + strayLight(2, wo));
+        EXPECT_NEAR(at(rates, Band::B, x, y) / wanted, 1, 1.5e-7);
+    });
+}
+
 TEST(Stage, AMirrorShowsTheLedAsADiscOfHalfADegree) {
     const FieldOfView whole(optics(), {.x = 128, .y = 0, .size = {1024, 1024}});
     for (int led : {0, 2}) {

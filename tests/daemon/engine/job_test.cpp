@@ -11,6 +11,7 @@ namespace {
 constexpr JobKind kKinds[] = {JobKind::CalibrateMirror,
                               JobKind::CalibrateBlack,
                               JobKind::CalibrateWhite,
+                              JobKind::CalibrateZero,
                               JobKind::VerifyWhite,
                               JobKind::Measure,
                               JobKind::Plan,

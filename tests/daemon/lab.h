@@ -1,0 +1,73 @@
+#pragma once
+// A calibrated simulated rig in this process: the references taken, samples measured, the truth
+// known. What a job of the daemon does, without store and daemon.
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "daemon/measurement.h"
+#include "driver/steady_clock.h"
+#include "proc/models/spec.h"
+#include "sim/in_process.h"
+
+namespace gonio::daemon::test {
+
+class Lab {
+public:
+    /// `rigErrors` as on the command line; `systematic`: none, random, ... (references). `frames`:
+    /// of each exposure of a reference; a job takes 8.
+    Lab(const std::string& rigErrors,
+        const std::string& systematic,
+        std::uint64_t seed,
+        int frames = 8);
+
+    /// Takes the lens map.
+    void calibrateMirror();
+    /// What was seen of a placement, with the lens's glare taken off, and with it.
+    struct Seen {
+        PlacementSignals clean, glaring;
+    };
+    /// Of a reference, or of a sample by its model.
+    [[nodiscard]] Seen seen(const std::string& what, const BracketPlan& plan);
+    void calibrateBlack();
+    void calibrateWhite();
+    void calibrateZero();
+
+    /// What the references say of a sample: with the zero reference or without it, with the glare
+    /// of all pictures taken off or left in.
+    enum class Lower {
+        Black,
+        Zero
+    };
+    enum class Glare {
+        TakenOff,
+        LeftIn
+    };
+    [[nodiscard]] proc::SampleSet calibrated(const Seen& sample,
+                                             Lower lower,
+                                             Glare glare = Glare::TakenOff) const;
+    [[nodiscard]] RigReferences references(Lower lower, Glare glare = Glare::TakenOff) const;
+
+    [[nodiscard]] const std::optional<LensRecord>& lens() const { return lens_; }
+    [[nodiscard]] std::vector<Radians> ledAngles() const { return rig_->identify().ledAngles; }
+
+private:
+    [[nodiscard]] Bench bench();
+    /// By Glare.
+    using BothWays = std::array<ReferenceRecord, 2>;
+    [[nodiscard]] BothWays reference(const std::string& what, const BracketPlan& plan);
+
+    RigProfile profile_;
+    std::optional<References> certified_;
+    driver::SteadyClock computer_;
+    std::unique_ptr<sim::InProcessDoor> door_;
+    std::optional<driver::Rig> rig_;
+    std::uint64_t nextPlanStep_ = 1;
+    std::optional<LensRecord> lens_;
+    BothWays white_, black_, zero_;
+    int frames_;
+};
+
+}  // namespace gonio::daemon::test
