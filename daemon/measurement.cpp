@@ -100,7 +100,7 @@ Result<Captured> capturePlacement(const Bench& bench,
     const Result<Window> window = configureWindow(bench.rig);
     if (!window) return window.error();
     Sequencer sequencer(bench.rig, bench.profile, bench.nextPlanStep, bench.alive);
-    const Result<proc::DarkLibrary> darks = takeDarks(bench, sequencer, darkFrames);
+    Result<proc::DarkLibrary> darks = takeDarks(bench, sequencer, darkFrames);
     if (!darks) return darks.error();
     const Stopwatch preparing(bench.clock);
     const auto binning = alongside(bench.rig, [&] { return proc::Binning(lens, *window, kField); });
@@ -118,7 +118,10 @@ Result<Captured> capturePlacement(const Bench& bench,
         if (Result<void> on = bench.step(stateName(states[i])); !on) return on.error();
     }
     Result<Captured> captured = gathering.finish();
-    if (captured) captured->compute += prepared;
+    if (captured) {
+        captured->compute += prepared;
+        captured->darks = std::move(*darks);
+    }
     return captured;
 }
 
@@ -227,19 +230,18 @@ Result<void> checkWhite(const PlacementSignals& white, const PlacementSignals& b
     return {};
 }
 
-Result<proc::SampleSet> calibrateSample(const PlacementSignals& signals,
-                                        const std::vector<Radians>& ledAngles,
-                                        const RigReferences& references,
-                                        proc::SampleInfo info,
-                                        bool force) {
+proc::SampleSet calibrateSample(const PlacementSignals& signals,
+                                const std::vector<Radians>& ledAngles,
+                                const RigReferences& references,
+                                proc::SampleInfo info) {
     constexpr Radians kTypicalView = 40_deg;
     const proc::AngleUncertainty uAngle = proc::DirectionUncertainty(references.lens.fit);
     proc::SampleSet set = asIfFlat(signals, ledAngles, references, uAngle);
     info.budgetJson = std::move(set.info.budgetJson);
     set.info = std::move(info);
     const Radians uLens = uAngle(Direction::fromSpherical(kTypicalView, Radians(0)));
-    Result<proc::SampleSet> flat = referredToItsNormal(std::move(set), uLens, force);
-    if (flat) flat->info.achievedUncertainty = achieved(*flat);
+    proc::SampleSet flat = referredToItsNormal(std::move(set), uLens);
+    flat.info.achievedUncertainty = achieved(flat);
     return flat;
 }
 

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "daemon/light_watch.h"
@@ -44,13 +45,21 @@ struct Bench {
 using PlaceMirror = std::function<Result<void>(const proc::Wedge&)>;
 [[nodiscard]] Result<LensRecord> measureLens(const Bench& bench, const PlaceMirror& place);
 
+/// The first bracket of a capture, and the same one once more at its end.
+struct Repeat {
+    State state;
+    proc::CellSignal first, last;
+};
+
 /// All states of what lies under the rig.
 struct Captured {
     PlacementSignals signals;
     proc::RawCapture raw;
     std::vector<LightStep> lightSteps;  ///< in the order of the states
     double chiSquarePerFreedom = 0;     ///< of all merges; 1 where noise alone differs
-    Seconds compute{0};  ///< of merging and binning, though the rig went on meanwhile
+    Seconds compute{0};            ///< of merging and binning, though the rig went on meanwhile
+    proc::DarkLibrary darks;       ///< taken over the sample
+    std::optional<Repeat> repeat;  ///< empty where none was taken
 };
 [[nodiscard]] Result<Captured> measurePlacement(const Bench& bench,
                                                 const proc::LensMap& lens,
@@ -69,12 +78,10 @@ struct RigReferences {
     const References& certified;
     const RigProfile& profile;
 };
-/// With the tilt of the sample found, and corrected where that is sound (sample_pose.h): Quality
-/// error for a wavy sample unless `force`.
-[[nodiscard]] Result<proc::SampleSet> calibrateSample(const PlacementSignals& signals,
-                                                      const std::vector<Radians>& ledAngles,
-                                                      const RigReferences& references,
-                                                      proc::SampleInfo info,
-                                                      bool force = false);
+/// With the tilt of the sample found, and corrected where that is sound (sample_pose.h).
+[[nodiscard]] proc::SampleSet calibrateSample(const PlacementSignals& signals,
+                                              const std::vector<Radians>& ledAngles,
+                                              const RigReferences& references,
+                                              proc::SampleInfo info);
 
 }  // namespace gonio::daemon

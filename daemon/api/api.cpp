@@ -265,10 +265,12 @@ Result<ApiReply> postJob(const Call& call) {
     Fields fields(call.request.body);
     const Result<JobKind> kind = parseJobKind(fields.text("kind", true));
     const std::optional<std::string> effortName = fields.optionalText("effort");
+    const std::optional<std::string> backingName = fields.optionalText("backing");
     JobRequest job{.name = fields.text("name"),
                    .notes = fields.text("notes"),
                    .force = fields.flag("force"),
-                   .calibration = fields.text("calibration")};
+                   .calibration = fields.text("calibration"),
+                   .against = fields.text("against")};
     job.limit = fields.number("limit").value_or(job.limit);
     if (Result<void> good = fields.verdict(); !good) return good.error();
     if (!kind) return kind.error();
@@ -277,6 +279,11 @@ Result<ApiReply> postJob(const Call& call) {
         const Result<Effort> effort = parseEffort(*effortName);
         if (!effort) return effort.error();
         job.effort = *effort;
+    }
+    if (backingName) {
+        const Result<proc::Backing> backing = proc::parseBacking(*backingName);
+        if (!backing) return backing.error();
+        job.backing = *backing;
     }
     const Result<JobRecord> begun = call.engine.submit(job);
     if (!begun) return begun.error();

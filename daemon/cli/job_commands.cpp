@@ -7,8 +7,10 @@
 #include "daemon/cli/answer.h"
 #include "daemon/cli/commands.h"
 #include "daemon/cli/followed_job.h"
+#include "proc/core/log.h"
 #include "proc/core/number_text.h"
 #include "proc/formats/file_bytes.h"
+#include "proc/quality/verdict.h"
 
 namespace gonio::daemon {
 namespace {
@@ -41,6 +43,15 @@ std::string measuredLine(const Json& done) {
            percent(done.at("median_relative_uncertainty").get<double>()) + " (k = 1), " +
            seconds(done, "rig_seconds") + " on the rig, " + seconds(done, "compute_seconds") +
            " computing; " + text(done, "file");
+}
+
+/// Of each verdict on a measured sample that is not good.
+void warn(const Json& done) {
+    for (const proc::Verdict& verdict : proc::readVerdicts(done.at("qc").dump())) {
+        const bool bad =
+            verdict.grade == proc::Grade::Warned || verdict.grade == proc::Grade::Refused;
+        if (bad) log::warning(proc::described(verdict));
+    }
 }
 
 std::string recalibratedLine(const Json& done) {
@@ -92,10 +103,13 @@ Result<void> measure(const CommonOptions& common, const MeasureOptions& options)
                        {"name", options.name},
                        {"effort", std::string(name(options.effort))},
                        {"notes", options.notes},
-                       {"force", options.force}};
+                       {"force", options.force},
+                       {"backing", options.backing.empty() ? Json() : Json(options.backing)},
+                       {"against", options.against}};
     const auto done = FollowedJob(common, client, options.name)
                           .run(request.dump(-1, ' ', false, Json::error_handler_t::replace));
     if (!done) return done.error();
+    if (Result<void> warned = understood(*done, warn); !warned) return warned;
     if (Result<void> copied = copy(client, options.name, options.output); !copied) return copied;
     return shown(common, done, [](const Json& json) { std::cout << measuredLine(json) << "\n"; });
 }

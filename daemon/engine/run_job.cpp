@@ -8,6 +8,7 @@
 #include "daemon/calibrations.h"
 #include "daemon/engine/job.h"
 #include "daemon/measurement.h"
+#include "daemon/sample_quality.h"
 #include "proc/core/log.h"
 #include "proc/core/median.h"
 #include "proc/core/number_text.h"
@@ -70,6 +71,7 @@ private:
     [[nodiscard]] Result<void> checkValidity(const CalibrationSet& set) const;
     [[nodiscard]] Result<void> fitsThisRig(const ReferenceRecord& reference) const;
     [[nodiscard]] Result<ReferenceRecord> reference(const std::string& kind) const;
+    [[nodiscard]] Result<BackingEvidence> backingEvidence() const;
     void finish(proc::SampleInfo& info, const Captured& captured) const;
     Result<SampleRecord> keep(const std::string& name,
                               const proc::SampleSet& set,
@@ -345,6 +347,19 @@ Result<SampleRecord> JobRun::keep(const std::string& name,
     return std::move(kept->sample);
 }
 
+/// Looked for before the rig is asked for anything.
+Result<BackingEvidence> JobRun::backingEvidence() const {
+    BackingEvidence evidence{.backing = request_.backing, .other = {}};
+    if (request_.against.empty()) return evidence;
+    const Result<SampleRecord> record = bench_.store.sample(request_.against);
+    if (!record) return record.error();
+    Result<proc::SampleSet> other = proc::readGonio(record->file);
+    if (!other) return other.error();
+    evidence.other = std::move(*other);
+    if (Result<void> good = checkOther(evidence); !good) return good.error();
+    return evidence;
+}
+
 Result<Json> JobRun::measure() {
     const Result<CalibrationSet> set = newestSet(bench_.store, serial_);
     if (!set) return set.error();
@@ -356,6 +371,8 @@ Result<Json> JobRun::measure() {
     }
     const Result<References> certified = loadReferences(bench_.profile);
     if (!certified) return certified.error();
+    const Result<BackingEvidence> backing = backingEvidence();
+    if (!backing) return backing.error();
     Result<Captured> captured = capture(sampleBracket(request_.effort), kDarkFrames);
     if (!captured) return captured.error();
 
@@ -364,39 +381,23 @@ Result<Json> JobRun::measure() {
     about.referenceCertificate = certified->white->certificate().citation;
     about.calibrationId = set->id();
     finish(about, *captured);
-    proc::SampleSet sample;
     const std::vector<Radians> angles = bench_.rig.identify().ledAngles;
-    const auto workedOut = [&](bool force) -> Result<proc::SampleSet> {
-        const Result<void> steady =
-            checkSteady(*captured, "measure again, or measure with --force");
-        if (!steady && !force) return steady.error();
-        const Stopwatch calibrating(bench_.computer);
-        auto calibrated = calibrateSample(
-            captured->signals,
-            angles,
-            {loaded->lens, loaded->white, loaded->black, *certified, bench_.profile},
-            about,
-            force);
-        if (calibrated) calibrated->info.computeSeconds += calibrating.elapsed().count();
-        return calibrated;
-    };
+    const RigReferences references{
+        loaded->lens, loaded->white, loaded->black, *certified, bench_.profile};
+    proc::SampleSet sample;
     const auto kept = whileAlive([&]() -> Result<SampleRecord> {
-        Result<proc::SampleSet> calibrated = workedOut(request_.force);
-        if (!calibrated) {  // refused; what was captured is kept all the same
-            const Result<proc::SampleSet> forced = workedOut(true);
-            if (!forced) return forced.error();
-            const std::string name = request_.name.substr(0, kLongestRefused) + ".refused";
-            const auto aside = keep(name, *forced, std::move(captured->raw.states));
-            if (!aside) return aside.error();
-            return Error{calibrated.error().kind,
-                         calibrated.error().message + "; it is kept as '" + name + "'"};
-        }
-        sample = std::move(*calibrated);
-        if (!captured->lightSteps.empty()) {
-            log::warning("the light changed: " + described(captured->lightSteps) +
-                         "; measured all the same");
-        }
-        return keep(request_.name, sample, std::move(captured->raw.states));
+        const Stopwatch calibrating(bench_.computer);
+        sample = calibrateSample(captured->signals, angles, references, about);
+        judgeCapture(sample, *captured, references);
+        judgeTable(sample);
+        judgeBacking(sample, *backing);
+        sample.info.computeSeconds += calibrating.elapsed().count();
+        const Result<void> good = accepted(sample, request_.force);
+        if (good) return keep(request_.name, sample, std::move(captured->raw.states));
+        const std::string aside = request_.name.substr(0, kLongestRefused) + ".refused";
+        const auto refused = keep(aside, sample, std::move(captured->raw.states));
+        if (!refused) return refused.error();
+        return Error{good.error().kind, good.error().message + "; it is kept as '" + aside + "'"};
     });
     if (!kept) return kept.error();
     return Json{{"schema", "gonio/measure/1"},
@@ -408,6 +409,7 @@ Result<Json> JobRun::measure() {
                 {"measured_cells", measuredCells(sample)},
                 {"median_relative_uncertainty", sample.info.achievedUncertainty.value_or(0)},
                 {"chi_square_per_freedom", captured->chiSquarePerFreedom},
+                {"qc", Json::parse(sample.info.qcVerdicts)},
                 {"rig_seconds", sample.info.rigSeconds},
                 {"compute_seconds", sample.info.computeSeconds}};
 }
