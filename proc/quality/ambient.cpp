@@ -1,6 +1,5 @@
 #include "proc/quality/ambient.h"
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -33,15 +32,9 @@ Place placeOf(const LensMap& lens, Radians field, const SensorPoint& at) {
     return wo->theta() < field ? Place::Inside : Place::Margin;
 }
 
-bool isHot(const DarkFrame& dark, int x, int y) {
-    const auto hot = dark.hotInRow(y);
-    return std::any_of(hot.begin(), hot.end(), [&](const HotPixel& one) { return one.x == x; });
-}
-
 /// The pixels of a dark frame, inside and, by column, outside.
 struct Split {
     Sum inside;
-    double field = 0;  ///< pixels inside, hot ones too
     std::vector<Sum> outside;
     double insideColumns = 0;
 };
@@ -57,8 +50,6 @@ Split split(const DarkFrame& dark, const LensMap& lens, Radians field) {
             const Place place = placeOf(
                 lens, field, {dark.window.x + (x + 0.5) * step, dark.window.y + (y + 0.5) * step});
             if (place == Place::Margin) continue;
-            if (place == Place::Inside) ++sums.field;
-            if (isHot(dark, x, y)) continue;
             any = any || place == Place::Inside;
             Sum& sum =
                 place == Place::Inside ? sums.inside : sums.outside[static_cast<std::size_t>(x)];
@@ -101,7 +92,7 @@ std::optional<AmbientLight> ambientLight(const DarkFrame& dark,
     const std::optional<Darkness> darkness = darknessOf(sums.outside);
     const double seconds = dark.exposure.seconds();
     if (!darkness || sums.inside.pixels == 0 || !(seconds > 0)) return std::nullopt;
-    const double perDn = sums.field * noise.electronsPerDn / seconds;
+    const double perDn = sums.inside.pixels * noise.electronsPerDn / seconds;
     const double u = darkness->scatter * std::sqrt(1 / darkness->columns + 1 / sums.insideColumns);
     return AmbientLight{.perSecond = perDn * (sums.inside.mean() - darkness->mean), .u = perDn * u};
 }

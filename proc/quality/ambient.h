@@ -1,8 +1,9 @@
 #pragma once
 // Light that leaks in between sample and rig, from a dark frame over the sample: the mean of the
 // pixels inside the lens's field, which it reaches, minus that of those outside, which no light
-// reaches; hot pixels left out. Dark frames take it off every measurement, so that a steady little
-// does no harm; what changes while a sample is captured stays in f.
+// reaches. Hot pixels count: they are as many on both sides, and what leaks in can make all of the
+// field look like them. Dark frames take it off every measurement, so that a steady little does no
+// harm; what changes while a sample is captured stays in f.
 //
 // It is held against what f = 1e-3 sends there. With g = (S_w - S_b) / (f_w - f_b) the signal per f
 // of a cell (two_point.h), a pixel at theta_o shows g f cos(theta_o) dOmega/dA, so that the field's

@@ -48,7 +48,7 @@ bool sureAndLarge(const Change& change, double limit, const QualityLimits& limit
 Verdict unknown(const std::string& name, bool repeated) {
     return {.name = name,
             .figure = {},
-            .evidence = repeated ? "its cells showed no light"
+            .evidence = repeated ? "its cells showed no light, or too much of it"
                                  : "the first bracket was not repeated as the last",
             .next = {}};
 }
@@ -65,9 +65,15 @@ RepeatChange changeBetween(const CellSignal& first,
     const auto away = [&](const Direction& wo) { return angleBetween({wo, mirror}); };
     const auto far = ratioOver(first, last, [&](const Direction& wo) { return away(wo) > kFar; });
     const auto lobe = ratioOver(first, last, [&](const Direction& wo) { return away(wo) < kLobe; });
+    bool saturated = false;
+    for (std::size_t cell = 0; cell < first.size(); ++cell) {
+        const Flags flags = first.flags[cell] | last.flags[cell];
+        saturated =
+            saturated || (flags.has(Flag::Saturated) && away(CellGrid::centre(cell)) < kLobe);
+    }
     RepeatChange change;
     if (far) change.drift = changeOf(*far);
-    if (far && lobe) {
+    if (far && lobe && !saturated) {
         change.softness =
             changeOf({lobe->value / far->value, lobe->relativeVariance + far->relativeVariance});
     }

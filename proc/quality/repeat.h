@@ -4,7 +4,8 @@
 // all cells alike. With S the sum of the signals over some cells, R = S(first) / S(last):
 //     drift     R over cells more than 30 degrees from the mirror direction, minus 1;
 //     softness  R over those within 10 degrees, over the former, minus 1.
-// Only cells that are present in both count.
+// Only cells that are present in both count. Where a cell of the lobe is saturated its neighbours
+// are cut as well, differently each time: nothing is said of softness there.
 
 #include <optional>
 

@@ -76,6 +76,16 @@ TEST(Repeat, SmallOrUnsureChangesAreLetBe) {
     EXPECT_EQ(grade(0.0101, 0.0021), Grade::Ok);
 }
 
+TEST(Repeat, OfALobeThatIsSaturatedNothingIsDetermined) {
+    CellSignal first = rested(1);
+    const auto brightest = *CellGrid::cellAt(kMirror);
+    first.flags[brightest] = Flags{Flag::Saturated};
+    const RepeatChange change = changeBetween(first, rested(2), kMirror);
+    EXPECT_TRUE(change.drift);
+    EXPECT_FALSE(change.softness);
+    EXPECT_EQ(softnessVerdict(change).grade, Grade::NotDetermined);
+}
+
 TEST(Repeat, WithoutARepeatOrLightNothingIsDetermined) {
     EXPECT_EQ(softnessVerdict({}).grade, Grade::NotDetermined);
     EXPECT_EQ(driftVerdict({}).grade, Grade::NotDetermined);
