@@ -17,8 +17,8 @@ namespace gonio::proc {
 /// Of one state over CellGrid; empty when no cell is present.
 [[nodiscard]] std::optional<Measured<double>> reflectedFraction(const CellSamples& cells);
 
-/// `energy`: refused when any state sends back more than 1 by three standard uncertainties; its
-/// figure is the state that sends back most, in standard uncertainties above 1 if any is above.
+/// `energy`: refused when any state sends back more than 1 by three standard uncertainties. Its
+/// figure is that of the state that is furthest above 1, or nearest to it, counted in these.
 [[nodiscard]] Verdict energyVerdict(const SampleSet& sample, const QualityLimits& limits = {});
 
 }  // namespace gonio::proc

@@ -5,9 +5,9 @@
 // two sides of its picture are compared with the normal of the other's.
 //
 // f at an LED's incidence is bilinear between cell centres (sample_lookup.h). With d the difference
-// over the mean of a pair and u_d its standard uncertainty, all parts taken as independent but for
-// none: chi^2 per pair is the mean of (d / u_d)^2, and the size is the median |d|. What is common
-// to all cells, such as the white's own error, cancels in d, so that u_d is rather too large.
+// over the mean of a pair and u_d its standard uncertainty, from the u of both as if independent:
+// chi^2 per pair is the mean of (d / u_d)^2, and the size is the median |d|. What is common to all
+// cells, such as the white's own error, cancels in d, so that u_d is rather too large.
 
 #include <optional>
 #include <vector>
