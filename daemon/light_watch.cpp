@@ -1,5 +1,6 @@
 #include "daemon/light_watch.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "proc/core/number_text.h"
@@ -36,6 +37,23 @@ std::string described(std::span<const LightStep> steps) {
     std::string text;
     for (const LightStep& step : steps) text += (text.empty() ? "" : "; ") + described(step);
     return text;
+}
+
+proc::Verdict lightVerdict(std::span<const LightStep> steps) {
+    proc::Verdict verdict{.name = "light",
+                          .grade = proc::Grade::Ok,
+                          .figure = {},
+                          .evidence = "steady within each bracket",
+                          .next = {}};
+    if (steps.empty()) return verdict;
+    const auto sizeOf = [](const LightStep& step) { return std::abs(step.change.offset.size); };
+    const LightStep& largest = *std::ranges::max_element(steps, {}, sizeOf);
+    verdict.grade = proc::Grade::Refused;
+    verdict.figure = proc::Figure{
+        .value = sizeOf(largest), .u = largest.change.offset.u, .unit = "1", .limit = kSmallest};
+    verdict.evidence = "the light changed: " + described(steps);
+    verdict.next = "measure again";
+    return verdict;
 }
 
 }  // namespace gonio::daemon

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "daemon/sequencer.h"
+#include "proc/quality/verdict.h"
 #include "proc/radiance/frame_residuals.h"
 
 namespace gonio::daemon {
@@ -28,5 +29,8 @@ struct LightStep {
 /// One sentence part for each, such as "LED 2 g: frames 9 to 16 of 16 are 5.0 % (u 0.1 %) darker
 /// than the others"; empty without any.
 [[nodiscard]] std::string described(std::span<const LightStep> steps);
+
+/// `light`: refused with any step; its figure is the largest one's.
+[[nodiscard]] proc::Verdict lightVerdict(std::span<const LightStep> steps);
 
 }  // namespace gonio::daemon

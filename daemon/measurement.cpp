@@ -277,11 +277,10 @@ proc::References referencesOf(const RigReferences& references, State state) {
             .black = trap ? *references.certified.zero : *references.certified.black};
 }
 
-Result<proc::SampleSet> calibrateSample(const PlacementSignals& signals,
-                                        const std::vector<Radians>& ledAngles,
-                                        const RigReferences& references,
-                                        proc::SampleInfo info,
-                                        bool force) {
+proc::SampleSet calibrateSample(const PlacementSignals& signals,
+                                const std::vector<Radians>& ledAngles,
+                                const RigReferences& references,
+                                proc::SampleInfo info) {
     constexpr Radians kTypicalView = 40_deg;
     const proc::AngleUncertainty uAngle = proc::DirectionUncertainty(references.lens.fit);
     proc::SampleSet set = asIfFlat(signals, ledAngles, references, uAngle);
@@ -289,8 +288,8 @@ Result<proc::SampleSet> calibrateSample(const PlacementSignals& signals,
     noteBlackCheck(checkBlack(references, ledAngles), info);
     set.info = std::move(info);
     const Radians uLens = uAngle(Direction::fromSpherical(kTypicalView, Radians(0)));
-    Result<proc::SampleSet> flat = referredToItsNormal(std::move(set), uLens, force);
-    if (flat) flat->info.achievedUncertainty = achieved(*flat);
+    proc::SampleSet flat = referredToItsNormal(std::move(set), uLens);
+    flat.info.achievedUncertainty = achieved(flat);
     return flat;
 }
 

@@ -49,7 +49,7 @@ struct Bench {
 using PlaceMirror = std::function<Result<void>(const proc::Wedge&)>;
 [[nodiscard]] Result<LensRecord> measureLens(const Bench& bench, const PlaceMirror& place);
 
-/// A bracket that was taken twice, at the begin and at the end of a capture.
+/// The first exposures of a capture, and the same one once more at its end.
 struct Repeat {
     State state;
     proc::CellSignal first, last;
@@ -61,9 +61,9 @@ struct Captured {
     proc::RawCapture raw;
     std::vector<LightStep> lightSteps;  ///< in the order of the states
     double chiSquarePerFreedom = 0;     ///< of all merges; 1 where noise alone differs
-    proc::DarkLibrary darks;            ///< with the sample under the rig
-    std::optional<Repeat> repeat{};     ///< of a planned run
-    Seconds compute{0};  ///< of merging and binning, though the rig went on meanwhile
+    Seconds compute{0};            ///< of merging and binning, though the rig went on meanwhile
+    proc::DarkLibrary darks;       ///< taken over the sample
+    std::optional<Repeat> repeat;  ///< empty where none was taken
 };
 [[nodiscard]] Result<Captured> measurePlacement(const Bench& bench,
                                                 const proc::LensMap& lens,
@@ -87,12 +87,10 @@ struct RigReferences {
 };
 /// What a state is held against: white, and zero or black.
 [[nodiscard]] proc::References referencesOf(const RigReferences& references, State state);
-/// With the tilt of the sample found, and corrected where that is sound (sample_pose.h): Quality
-/// error for a wavy sample unless `force`.
-[[nodiscard]] Result<proc::SampleSet> calibrateSample(const PlacementSignals& signals,
-                                                      const std::vector<Radians>& ledAngles,
-                                                      const RigReferences& references,
-                                                      proc::SampleInfo info,
-                                                      bool force = false);
+/// With the tilt of the sample found, and corrected where that is sound (sample_pose.h).
+[[nodiscard]] proc::SampleSet calibrateSample(const PlacementSignals& signals,
+                                              const std::vector<Radians>& ledAngles,
+                                              const RigReferences& references,
+                                              proc::SampleInfo info);
 
 }  // namespace gonio::daemon

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "proc/core/log.h"
 #include "proc/core/median.h"
 #include "proc/core/number_text.h"
 #include "proc/quality/tilt.h"
 #include "proc/quality/tilt_correction.h"
+#include "proc/quality/verdict.h"
 
 namespace gonio::daemon {
 namespace {
@@ -16,28 +16,76 @@ using Json = nlohmann::ordered_json;
 
 std::string degrees(Radians angle) { return fixed(angle.degrees(), 2) + " degrees"; }
 
-/// "tilt: 0.52 degrees (u 0.01 degrees), corrected".
-std::string described(const proc::TiltEstimate& estimate, bool corrected) {
-    if (!estimate.determined) {
-        return "tilt and waviness: not determined, as the lobe is none that can be fitted; " +
-               degrees(estimate.joint.u) + " of tilt are in the uncertainties";
-    }
-    return "tilt: " + degrees(estimate.joint.tilt()) + " (u " + degrees(estimate.joint.u) + "), " +
-           (corrected ? "corrected" : "not corrected") +
-           "; waviness: " + degrees(estimate.waviness);
+proc::Figure figure(Radians value, Radians u) {
+    return {.value = value.degrees(), .u = u.degrees(), .unit = "degrees", .limit = 0};
 }
 
-std::string objection(const proc::TiltEstimate& estimate, const PoseLimits& limits) {
-    if (estimate.waviness > limits.wavy) {
-        return "the sample is wavy: under the LEDs its normals differ by " +
-               degrees(estimate.waviness) + " rms, at most " + degrees(limits.wavy) +
-               " is good; flatten it";
+proc::Verdict tiltVerdict(const proc::TiltEstimate& estimate,
+                          bool corrected,
+                          const PoseLimits& limits) {
+    const Radians tilt = estimate.joint.tilt();
+    proc::Verdict verdict{.name = "tilt",
+                          .figure = figure(tilt, estimate.joint.u),
+                          .evidence = "the sample is tilted by " + degrees(tilt),
+                          .next = {}};
+    verdict.grade =
+        proc::graded(*verdict.figure, {limits.warned.degrees(), limits.refused.degrees()});
+    if (verdict.grade == proc::Grade::Refused) {
+        verdict.evidence += ", at most " + degrees(limits.refused) + " is good";
+    } else {
+        verdict.evidence += corrected ? ", corrected" : ", not corrected";
     }
-    if (estimate.joint.tilt() > limits.refused) {
-        return "the sample is tilted by " + degrees(estimate.joint.tilt()) + ", at most " +
-               degrees(limits.refused) + " is good; seat it again";
+    if (verdict.grade != proc::Grade::Ok) verdict.next = "seat it again";
+    return verdict;
+}
+
+/// Standard uncertainty of the root mean square over the LEDs' normals.
+Radians uOfWaviness(const proc::TiltEstimate& estimate) {
+    double squares = 0, count = 0;
+    for (const auto& led : estimate.leds) {
+        if (!led) continue;
+        squares += led->u.value() * led->u.value();
+        ++count;
     }
-    return {};
+    return Radians(count > 0 ? std::sqrt(squares) / count : 0);
+}
+
+proc::Verdict wavinessVerdict(const proc::TiltEstimate& estimate, const PoseLimits& limits) {
+    proc::Verdict verdict{
+        .name = "waviness",
+        .figure = figure(estimate.waviness, uOfWaviness(estimate)),
+        .evidence = "under the LEDs its normals differ by " + degrees(estimate.waviness) + " rms",
+        .next = {}};
+    const double limit = limits.wavy.degrees();
+    verdict.grade = proc::graded(*verdict.figure, {limit, limit});
+    if (verdict.grade == proc::Grade::Refused) {
+        verdict.evidence = "the sample is wavy: " + verdict.evidence + ", at most " +
+                           degrees(limits.wavy) + " is good";
+        verdict.next = "flatten it";
+    }
+    return verdict;
+}
+
+proc::Verdict withoutLobe(const std::string& name) {
+    return {
+        .name = name, .figure = {}, .evidence = "there is no lobe that would suffer", .next = {}};
+}
+
+/// There is a lobe, and none that can be fitted.
+proc::Verdict undetermined(const std::string& name, const proc::TiltEstimate& estimate) {
+    return {.name = name,
+            .figure = {},
+            .evidence = "the lobe is none that can be fitted; " + degrees(estimate.joint.u) +
+                        " of tilt are in the uncertainties",
+            .next = "seat it well"};
+}
+
+/// Among those that the sample has already.
+void putBoth(proc::SampleInfo& info, proc::Verdict tilt, proc::Verdict waviness) {
+    std::vector<proc::Verdict> verdicts = proc::readVerdicts(info.qcVerdicts);
+    proc::put(verdicts, std::move(tilt));
+    proc::put(verdicts, std::move(waviness));
+    info.qcVerdicts = proc::verdictsText(verdicts);
 }
 
 bool worthCorrecting(const proc::TiltEstimate& estimate, const PoseLimits& limits) {
@@ -78,26 +126,25 @@ std::string withTilt(const std::string& budgetJson,
 
 }  // namespace
 
-Result<proc::SampleSet> referredToItsNormal(proc::SampleSet sample,
-                                            Radians uAngle,
-                                            bool force,
-                                            const PoseLimits& limits) {
+proc::SampleSet referredToItsNormal(proc::SampleSet sample,
+                                    Radians uAngle,
+                                    const PoseLimits& limits) {
     const std::optional<proc::TiltEstimate> estimate = proc::estimateTilt(sample, uAngle);
     if (!estimate || estimate->lobes.front().alpha > limits.matt) {
-        sample.info.qcVerdicts = "tilt: not determined, as there is no lobe that would suffer";
+        putBoth(sample.info, withoutLobe("tilt"), withoutLobe("waviness"));
         return sample;
     }
-    if (const std::string bad = objection(*estimate, limits); !bad.empty()) {
-        if (!force) return Error{ErrorKind::Quality, bad + ", or measure with --force"};
-        log::warning(bad + "; measured all the same");
-    } else if (estimate->joint.tilt() > limits.warned) {
-        log::warning("the sample is tilted by " + degrees(estimate->joint.tilt()));
+    if (!estimate->determined) {
+        putBoth(sample.info, undetermined("tilt", *estimate), undetermined("waviness", *estimate));
+        proc::SampleSet widened = proc::withTiltUncertainty(sample, *estimate);
+        widened.info.budgetJson = withTilt(sample.info.budgetJson, sample, widened);
+        return widened;
     }
-    if (!estimate->determined) log::warning(described(*estimate, false));
     const bool corrected = worthCorrecting(*estimate, limits);
     proc::SampleSet flat = corrected ? proc::tiltCorrected(sample, *estimate)
                                      : proc::withTiltUncertainty(sample, *estimate);
-    flat.info.qcVerdicts = described(*estimate, corrected);
+    putBoth(
+        flat.info, tiltVerdict(*estimate, corrected, limits), wavinessVerdict(*estimate, limits));
     flat.info.budgetJson = withTilt(sample.info.budgetJson, sample, flat);
     return flat;
 }

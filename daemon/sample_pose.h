@@ -1,11 +1,9 @@
 #pragma once
 // The check of how a sample lay (proc/quality/tilt.h), and what follows from it: a tilt that is
-// sure and does harm is corrected, any other goes into the uncertainties; a large one is warned of;
-// a wavy sample is refused. Where a lobe does not tell its tilt, that is warned of, and what
-// samples are seated to goes into the uncertainties. The verdict stands in the sample's information
-// with its evidence.
+// sure and does harm is corrected, any other goes into the uncertainties; where a lobe does not
+// tell its tilt, what samples are seated to does. The verdicts `tilt` and `waviness` stand in the
+// sample's information (proc/quality/verdict.h).
 
-#include "proc/core/result.h"
 #include "proc/table/sample_set.h"
 
 namespace gonio::daemon {
@@ -18,11 +16,9 @@ struct PoseLimits {
     double matt = 0.5;  ///< alpha: a wider lobe shows its tilt badly, and hardly suffers from it
 };
 
-/// `uAngle`: standard uncertainty of the lens map's directions, per axis. Quality error for a wavy
-/// sample or a tilt beyond 5 degrees, unless `force`.
-[[nodiscard]] Result<proc::SampleSet> referredToItsNormal(proc::SampleSet sample,
-                                                          Radians uAngle,
-                                                          bool force,
-                                                          const PoseLimits& limits = {});
+/// `uAngle`: standard uncertainty of the lens map's directions, per axis.
+[[nodiscard]] proc::SampleSet referredToItsNormal(proc::SampleSet sample,
+                                                  Radians uAngle,
+                                                  const PoseLimits& limits = {});
 
 }  // namespace gonio::daemon

@@ -265,10 +265,12 @@ Result<ApiReply> postJob(const Call& call) {
     Fields fields(call.request.body);
     const Result<JobKind> kind = parseJobKind(fields.text("kind", true));
     const std::optional<std::string> effortName = fields.optionalText("effort");
+    const std::optional<std::string> backingName = fields.optionalText("backing");
     JobRequest job{.name = fields.text("name"),
                    .notes = fields.text("notes"),
                    .force = fields.flag("force"),
-                   .calibration = fields.text("calibration")};
+                   .calibration = fields.text("calibration"),
+                   .against = fields.text("against")};
     job.limit = fields.number("limit").value_or(job.limit);
     const std::optional<double> target = fields.number("target_uncertainty");
     const std::optional<double> budget = fields.number("time_budget_s");
@@ -282,6 +284,11 @@ Result<ApiReply> postJob(const Call& call) {
     }
     job.goal.targetUncertainty = target;
     if (budget) job.goal.timeBudget = Seconds(*budget);
+    if (backingName) {
+        const Result<proc::Backing> backing = proc::parseBacking(*backingName);
+        if (!backing) return backing.error();
+        job.backing = *backing;
+    }
     const Result<JobRecord> begun = call.engine.submit(job);
     if (!begun) return begun.error();
     return reply("job", toJson(*begun), kAccepted);

@@ -50,7 +50,9 @@ struct MeasureOptions {
     std::string name;
     CaptureGoal goal;
     std::string notes;
-    bool force = false;            ///< with calibrations that are no longer good, too
+    bool force = false;   ///< with calibrations that are no longer good and refused verdicts, too
+    std::string backing;  ///< black or white; empty: not said
+    std::string against;  ///< the same sample on the other backing; empty: none
     std::filesystem::path output;  ///< a copy of the .gonio; empty: the store only
 };
 Result<void> measure(const CommonOptions& common, const MeasureOptions& options);

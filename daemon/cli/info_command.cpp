@@ -1,5 +1,6 @@
 // gonio info: what a file holds, for people and for machines.
 
+#include <algorithm>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -10,6 +11,7 @@
 #include "proc/formats/file_degrees.h"
 #include "proc/formats/graw_exr.h"
 #include "proc/optics/cell_grid.h"
+#include "proc/quality/verdict.h"
 
 namespace gonio::daemon {
 namespace {
@@ -35,7 +37,7 @@ Json sampleJson(const proc::SampleSet& sample) {
     json["reference"] = info.referenceCertificate;
     json["profile_hash"] = info.profileHash;
     json["session"] = info.session;
-    json["qc"] = info.qcVerdicts;
+    json["qc"] = Json::parse(proc::verdictsText(proc::readVerdicts(info.qcVerdicts)));
     json["interruptions"] = info.interruptions;
     json["requested_uncertainty"] =
         info.requestedUncertainty ? Json(*info.requestedUncertainty) : Json();
@@ -104,6 +106,19 @@ void printPlain(const Json& json, const std::string& indent) {
     }
 }
 
+/// Each verdict as one line under its name.
+Json withReadableVerdicts(Json facts) {
+    const auto found = facts.find("qc");
+    if (found == facts.end() || found->empty()) return facts;
+    Json lines = Json::object();
+    for (const proc::Verdict& verdict : proc::readVerdicts(found->dump())) {
+        const std::string line = proc::described(verdict);
+        lines[verdict.name] = line.substr(std::min(line.size(), verdict.name.size() + 2));
+    }
+    *found = std::move(lines);
+    return facts;
+}
+
 Json rawJson(const proc::RawCapture& capture) {
     Json json = {{"kind", "graw"}, {"about", capture.info}};
     Json states = Json::array();
@@ -162,7 +177,7 @@ Result<void> info(const CommonOptions& common, const std::string& file) {
         printJson(json);
     } else {
         std::cout << "file: " << file << "\n";
-        Json plain = *facts;
+        Json plain = withReadableVerdicts(*facts);
         const std::string budget = budgetTable(plain.value("budget", Json::array()));
         if (!budget.empty()) plain.erase("budget");
         printPlain(plain, "");

@@ -9,8 +9,10 @@
 #include "daemon/cli/commands.h"
 #include "daemon/cli/followed_job.h"
 #include "daemon/cli/output.h"
+#include "proc/core/log.h"
 #include "proc/core/number_text.h"
 #include "proc/formats/file_bytes.h"
+#include "proc/quality/verdict.h"
 
 namespace gonio::daemon {
 namespace {
@@ -92,6 +94,15 @@ void printPlan(const Json& plan) {
     for (const Json& note : plan.at("notes")) std::cout << note.get<std::string>() << "\n";
 }
 
+/// Of each verdict on a measured sample that is not good.
+void warn(const Json& done) {
+    for (const proc::Verdict& verdict : proc::readVerdicts(done.at("qc").dump())) {
+        const bool bad =
+            verdict.grade == proc::Grade::Warned || verdict.grade == proc::Grade::Refused;
+        if (bad) log::warning(proc::described(verdict));
+    }
+}
+
 std::string recalibratedLine(const Json& done) {
     const std::string with = text(done, "name") + " with calibration " + text(done, "calibration");
     if (done.at("identical").get<bool>()) return with + ": the same to the last bit";
@@ -139,11 +150,14 @@ Result<void> measure(const CommonOptions& common, const MeasureOptions& options)
     Json request{{"kind", "measure"},
                  {"name", options.name},
                  {"notes", options.notes},
-                 {"force", options.force}};
+                 {"force", options.force},
+                 {"backing", options.backing.empty() ? Json() : Json(options.backing)},
+                 {"against", options.against}};
     request.update(toJson(options.goal));
     const auto done = FollowedJob(common, client, options.name)
                           .run(request.dump(-1, ' ', false, Json::error_handler_t::replace));
     if (!done) return done.error();
+    if (Result<void> warned = understood(*done, warn); !warned) return warned;
     if (Result<void> copied = copy(client, options.name, options.output); !copied) return copied;
     return shown(common, done, [](const Json& json) { std::cout << measuredLine(json) << "\n"; });
 }

@@ -161,7 +161,13 @@ void Program::addMeasuring() {
     sub->add_option("name", measure.name, "the sample's name")->required();
     addGoal(sub);
     sub->add_option("--notes", measure.notes, "operator's notes, kept with the sample");
-    sub->add_flag("--force", measure.force, "with calibrations that are no longer good, too");
+    sub->add_flag("--force",
+                  measure.force,
+                  "with calibrations that are no longer good, and whatever its verdicts say, too");
+    sub->add_option("--backing", measure.backing, "black or white: what lies under the sample");
+    sub->add_option("--against",
+                    measure.against,
+                    "the same sample, measured on the other backing: tells translucency");
     sub->add_option("-o,--output", measure.output, "also write the .gonio here");
 
     sub = command(app,

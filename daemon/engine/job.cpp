@@ -16,6 +16,19 @@ constexpr std::array<std::string_view, 8> kKinds{"calibrate-mirror",
                                                  "recalibrate"};
 constexpr std::size_t kLongestNotes = 4096;
 
+Result<void> checkBacking(const JobRequest& request) {
+    if (!request.backing && request.against.empty()) return {};
+    if (request.kind != JobKind::Measure) {
+        return Error{ErrorKind::Usage, "backing, against: only measure has them"};
+    }
+    if (request.against.empty()) return {};
+    if (!request.backing) {
+        return Error{ErrorKind::Usage,
+                     "against '" + request.against + "': say on which backing the sample lies now"};
+    }
+    return checkSampleName(request.against);
+}
+
 }  // namespace
 
 std::string_view name(JobKind kind) { return kKinds[static_cast<std::size_t>(kind)]; }
@@ -37,6 +50,7 @@ Result<void> check(const JobRequest& request) {
         return Error{ErrorKind::Usage,
                      "name '" + request.name + "': only measure and recalibrate have one"};
     }
+    if (Result<void> good = checkBacking(request); !good) return good;
     if (request.notes.size() > kLongestNotes) {
         return Error{ErrorKind::Usage, "notes: more than 4096 bytes"};
     }

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "daemon/capture_goal.h"
@@ -13,6 +14,7 @@
 #include "driver/rig.h"
 #include "proc/core/stopwatch.h"
 #include "proc/plan/progress.h"
+#include "proc/quality/translucency.h"
 
 namespace gonio::daemon {
 
@@ -38,6 +40,9 @@ struct JobRequest {
     double limit = 0.01;      ///< verify-white: the largest relative change that passes
     bool force = false;       ///< measure: with calibrations that are no longer good, too
     std::string calibration;  ///< recalibrate: which (calibrations.h); empty: the newest
+    std::optional<proc::Backing>
+        backing{};          ///< measure: what lies under the sample; empty: not said
+    std::string against{};  ///< measure: the same sample on the other backing; empty: none
 };
 /// Usage error for what no rig can do.
 [[nodiscard]] Result<void> check(const JobRequest& request);

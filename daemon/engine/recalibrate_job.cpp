@@ -6,6 +6,7 @@
 #include "daemon/engine/job.h"
 #include "daemon/measurement.h"
 #include "daemon/references.h"
+#include "daemon/sample_quality.h"
 #include "proc/formats/file_bytes.h"
 #include "proc/formats/gonio_exr.h"
 
@@ -86,15 +87,13 @@ Result<std::string> workedOut(const Desk& desk, const Original& before, const Ca
     proc::SampleInfo info = before.sample.info;
     info.calibrationId = set.id();
     info.referenceCertificate = certified->white->certificate().citation;
-    constexpr bool kAsItWasAccepted = true;
-    const Result<proc::SampleSet> sample =
-        calibrateSample(*signals,
-                        anglesOf(before.sample),
-                        referencesOf(*loaded, *certified, desk.profile),
-                        std::move(info),
-                        kAsItWasAccepted);
-    if (!sample) return sample.error();
-    return proc::encodeGonio(*sample);
+    // Whatever its verdicts say now: it was accepted when it was measured.
+    proc::SampleSet sample = calibrateSample(*signals,
+                                             anglesOf(before.sample),
+                                             referencesOf(*loaded, *certified, desk.profile),
+                                             std::move(info));
+    judgeTable(sample);
+    return proc::encodeGonio(sample);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "daemon/engine/plan_document.h"
 #include "daemon/measurement.h"
 #include "daemon/planned_run.h"
+#include "daemon/sample_quality.h"
 #include "proc/core/log.h"
 #include "proc/core/median.h"
 #include "proc/core/number_text.h"
@@ -89,6 +90,7 @@ private:
     [[nodiscard]] Result<void> checkValidity(const CalibrationSet& set) const;
     [[nodiscard]] Result<void> fitsThisRig(const ReferenceRecord& reference) const;
     [[nodiscard]] Result<ReferenceRecord> reference(const std::string& kind) const;
+    [[nodiscard]] Result<BackingEvidence> backingEvidence() const;
     void finish(proc::SampleInfo& info, const Captured& captured) const;
     Result<SampleRecord> keep(const std::string& name,
                               const proc::SampleSet& set,
@@ -379,6 +381,19 @@ Result<SampleRecord> JobRun::keep(const std::string& name,
     return std::move(kept->sample);
 }
 
+/// Looked for before the rig is asked for anything.
+Result<BackingEvidence> JobRun::backingEvidence() const {
+    BackingEvidence evidence{.backing = request_.backing, .other = {}};
+    if (request_.against.empty()) return evidence;
+    const Result<SampleRecord> record = bench_.store.sample(request_.against);
+    if (!record) return record.error();
+    Result<proc::SampleSet> other = proc::readGonio(record->file);
+    if (!other) return other.error();
+    evidence.other = std::move(*other);
+    if (Result<void> good = checkOther(evidence); !good) return good.error();
+    return evidence;
+}
+
 Result<JobRun::Loaded> JobRun::load() const {
     Result<CalibrationSet> set = newestSet(bench_.store, serial_);
     if (!set) return set.error();
@@ -438,6 +453,8 @@ Result<Json> JobRun::measure() {
     if (!loaded) return loaded.error();
     const RigReferences references =
         referencesOf(loaded->records, loaded->certified, bench_.profile);
+    const Result<BackingEvidence> backing = backingEvidence();
+    if (!backing) return backing.error();
     Result<Taken> taken = take(references);
     if (!taken) return taken.error();
     Captured* const captured = &taken->captured;
@@ -448,34 +465,21 @@ Result<Json> JobRun::measure() {
     about.referenceCertificate = loaded->certified.white->certificate().citation;
     about.calibrationId = loaded->set.id();
     finish(about, *captured);
-    proc::SampleSet sample;
     const std::vector<Radians> angles = bench_.rig.identify().ledAngles;
-    const auto workedOut = [&](bool force) -> Result<proc::SampleSet> {
-        const Result<void> steady =
-            checkSteady(*captured, "measure again, or measure with --force");
-        if (!steady && !force) return steady.error();
-        const Stopwatch calibrating(bench_.computer);
-        auto calibrated = calibrateSample(captured->signals, angles, references, about, force);
-        if (calibrated) calibrated->info.computeSeconds += calibrating.elapsed().count();
-        return calibrated;
-    };
+    proc::SampleSet sample;
     const auto kept = whileAlive([&]() -> Result<SampleRecord> {
-        Result<proc::SampleSet> calibrated = workedOut(request_.force);
-        if (!calibrated) {  // refused; what was captured is kept all the same
-            const Result<proc::SampleSet> forced = workedOut(true);
-            if (!forced) return forced.error();
-            const std::string name = request_.name.substr(0, kLongestRefused) + ".refused";
-            const auto aside = keep(name, *forced, std::move(captured->raw.states));
-            if (!aside) return aside.error();
-            return Error{calibrated.error().kind,
-                         calibrated.error().message + "; it is kept as '" + name + "'"};
-        }
-        sample = std::move(*calibrated);
-        if (!captured->lightSteps.empty()) {
-            log::warning("the light changed: " + described(captured->lightSteps) +
-                         "; measured all the same");
-        }
-        return keep(request_.name, sample, std::move(captured->raw.states));
+        const Stopwatch calibrating(bench_.computer);
+        sample = calibrateSample(captured->signals, angles, references, about);
+        judgeCapture(sample, *captured, references);
+        judgeTable(sample);
+        judgeBacking(sample, *backing);
+        sample.info.computeSeconds += calibrating.elapsed().count();
+        const Result<void> good = accepted(sample, request_.force);
+        if (good) return keep(request_.name, sample, std::move(captured->raw.states));
+        const std::string aside = request_.name.substr(0, kLongestRefused) + ".refused";
+        const auto refused = keep(aside, sample, std::move(captured->raw.states));
+        if (!refused) return refused.error();
+        return Error{good.error().kind, good.error().message + "; it is kept as '" + aside + "'"};
     });
     if (!kept) return kept.error();
     return Json{{"schema", "gonio/measure/1"},
@@ -489,6 +493,7 @@ Result<Json> JobRun::measure() {
                 {"chi_square_per_freedom", captured->chiSquarePerFreedom},
                 {"planned", taken->planned},
                 {"achieved", taken->achieved},
+                {"qc", Json::parse(sample.info.qcVerdicts)},
                 {"rig_seconds", sample.info.rigSeconds},
                 {"compute_seconds", sample.info.computeSeconds}};
 }

@@ -72,6 +72,10 @@ public:
     /// Quality error that names the exposure, when none fits this frame's exposure, window and
     /// gain. The pointer stays good until the library changes.
     [[nodiscard]] Result<const DarkFrame*> find(const Frame& frame) const;
+    /// The one of the longest exposure, which shows most of what is not dark; null without any.
+    [[nodiscard]] const DarkFrame* longest() const {
+        return byExposure_.empty() ? nullptr : &byExposure_.rbegin()->second;
+    }
     [[nodiscard]] std::size_t size() const { return byExposure_.size(); }
 
 private:

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "proc/models/spec.h"
+#include "proc/quality/verdict.h"
 #include "tests/support/sample_sets.h"
 
 namespace gonio::daemon {
@@ -49,28 +50,47 @@ bool corrected(const proc::SampleSet& set) {
     return set.leds[1].bands[0].flags[100].has(Flag::TiltCorrected);
 }
 
+proc::Verdict verdictOf(const proc::SampleSet& set, const std::string& name) {
+    for (const proc::Verdict& one : proc::readVerdicts(set.info.qcVerdicts)) {
+        if (one.name == name) return one;
+    }
+    ADD_FAILURE() << "no verdict '" << name << "' in " << set.info.qcVerdicts;
+    return {};
+}
+
 TEST(SamplePose, TiltIsCorrectedAndItsLineStandsInTheBudget) {
-    const auto flat = referredToItsNormal(seen(kPlastic, tilted(0.5_deg)), kLens, false);
-    ASSERT_TRUE(flat) << flat.error().message;
-    EXPECT_TRUE(corrected(*flat));
-    EXPECT_NE(flat->info.qcVerdicts.find("tilt: 0.50 degrees"), std::string::npos)
-        << flat->info.qcVerdicts;
-    EXPECT_NE(flat->info.budgetJson.find("tilt of the sample"), std::string::npos);
+    const auto flat = referredToItsNormal(seen(kPlastic, tilted(0.5_deg)), kLens);
+    EXPECT_TRUE(corrected(flat));
+    const proc::Verdict tilt = verdictOf(flat, "tilt");
+    EXPECT_EQ(tilt.grade, proc::Grade::Ok);
+    ASSERT_TRUE(tilt.figure && tilt.figure->u);
+    EXPECT_NEAR(tilt.figure->value, 0.5, 0.02);
+    EXPECT_EQ(tilt.figure->limit, 1);
+    EXPECT_NE(tilt.evidence.find(", corrected"), std::string::npos) << tilt.evidence;
+    EXPECT_EQ(verdictOf(flat, "waviness").grade, proc::Grade::Ok);
+    EXPECT_NE(flat.info.budgetJson.find("tilt of the sample"), std::string::npos);
+}
+
+TEST(SamplePose, TiltAboveOneDegreeIsWarnedOf) {
+    const auto flat = referredToItsNormal(seen(kPlastic, tilted(1.5_deg)), kLens);
+    const proc::Verdict tilt = verdictOf(flat, "tilt");
+    EXPECT_EQ(tilt.grade, proc::Grade::Warned);
+    EXPECT_FALSE(tilt.next.empty());
 }
 
 TEST(SamplePose, FlatSampleIsLetBe) {
     const auto sample = seen(kPlastic, tilted(0_deg));
-    const auto same = referredToItsNormal(sample, kLens, false);
-    ASSERT_TRUE(same) << same.error().message;
-    EXPECT_FALSE(corrected(*same));
-    EXPECT_EQ(same->leds[1].bands[0].f[100], sample.leds[1].bands[0].f[100]);
+    const auto same = referredToItsNormal(sample, kLens);
+    EXPECT_FALSE(corrected(same));
+    EXPECT_EQ(same.leds[1].bands[0].f[100], sample.leds[1].bands[0].f[100]);
 }
 
 TEST(SamplePose, MattSamplesAreNeverWavyNorTilted) {
     for (const char* spec : {"lambert,albedo=0.5", "oren-nayar,albedo=0.8,sigma=0.3"}) {
-        const auto same = referredToItsNormal(seen(spec, tilted(0.5_deg)), kLens, false);
-        ASSERT_TRUE(same) << spec << same.error().message;
-        EXPECT_FALSE(corrected(*same)) << spec;
+        const auto same = referredToItsNormal(seen(spec, tilted(0.5_deg)), kLens);
+        EXPECT_FALSE(corrected(same)) << spec;
+        EXPECT_EQ(verdictOf(same, "tilt").grade, proc::Grade::NotDetermined) << spec;
+        EXPECT_EQ(verdictOf(same, "waviness").grade, proc::Grade::NotDetermined) << spec;
     }
 }
 
@@ -84,27 +104,30 @@ TEST(SamplePose, LobeThatDoesNotTellItsTiltHasOneInItsUncertainties) {
         }
     };
     const auto sample = seen(Ring(), tilted(0.5_deg));
-    const auto same = referredToItsNormal(sample, kLens, false);
-    ASSERT_TRUE(same) << same.error().message;
-    EXPECT_FALSE(corrected(*same));
-    EXPECT_NE(same->info.qcVerdicts.find("not determined, as the lobe"), std::string::npos)
-        << same->info.qcVerdicts;
-    EXPECT_GT(same->leds[1].bands[0].uSystematic[300], sample.leds[1].bands[0].uSystematic[300]);
+    const auto same = referredToItsNormal(sample, kLens);
+    EXPECT_FALSE(corrected(same));
+    EXPECT_NE(same.info.qcVerdicts.find("the lobe is none"), std::string::npos)
+        << same.info.qcVerdicts;
+    EXPECT_GT(same.leds[1].bands[0].uSystematic[300], sample.leds[1].bands[0].uSystematic[300]);
 }
 
-TEST(SamplePose, WavyOrSteepIsRefusedUnlessForced) {
+TEST(SamplePose, WavyOrSteepIsRefused) {
     const std::vector<Direction> waves{Direction::fromSpherical(0.5_deg, 0_deg),
                                        Direction::fromSpherical(0.5_deg, 90_deg),
                                        Direction::fromSpherical(0.5_deg, 180_deg),
                                        Direction::fromSpherical(0.5_deg, 270_deg)};
-    for (const auto& normals : {waves, tilted(7_deg)}) {
-        const auto sample = seen(kPlastic, normals);
-        const auto refused = referredToItsNormal(sample, kLens, false);
-        ASSERT_FALSE(refused);
-        EXPECT_EQ(refused.error().kind, ErrorKind::Quality);
-        EXPECT_NE(refused.error().message.find("--force"), std::string::npos);
-        EXPECT_TRUE(referredToItsNormal(sample, kLens, true));
-    }
+    const auto wavy = referredToItsNormal(seen(kPlastic, waves), kLens);
+    EXPECT_EQ(verdictOf(wavy, "waviness").grade, proc::Grade::Refused);
+    const auto steep = referredToItsNormal(seen(kPlastic, tilted(7_deg)), kLens);
+    EXPECT_EQ(verdictOf(steep, "tilt").grade, proc::Grade::Refused);
+}
+
+TEST(SamplePose, VerdictsOfOtherChecksStay) {
+    proc::SampleSet sample = seen("lambert,albedo=0.5", tilted(0_deg));
+    sample.info.qcVerdicts = proc::verdictsText(std::vector{
+        proc::Verdict{.name = "light", .figure = {}, .evidence = "steady", .next = {}}});
+    const auto same = referredToItsNormal(std::move(sample), kLens);
+    EXPECT_EQ(verdictOf(same, "light").evidence, "steady");
 }
 
 }  // namespace

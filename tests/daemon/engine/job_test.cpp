@@ -58,6 +58,21 @@ TEST(JobCheck, NotesAreAtMost4096Bytes) {
     EXPECT_EQ(refused.error().kind, ErrorKind::Usage);
 }
 
+TEST(JobCheck, OnlyASampleThatIsMeasuredHasABackingAndOneToHoldItAgainst) {
+    using proc::Backing;
+    EXPECT_TRUE(check(JobRequest{.name = "a", .backing = Backing::Black}));
+    EXPECT_TRUE(check(JobRequest{.name = "a", .backing = Backing::White, .against = "b"}));
+    for (const JobRequest& bad :
+         {JobRequest{.name = "a", .against = "b"},
+          JobRequest{.name = "a", .backing = Backing::White, .against = "../b"},
+          JobRequest{.kind = JobKind::Recalibrate, .name = "a", .backing = Backing::White},
+          JobRequest{.kind = JobKind::CalibrateWhite, .backing = Backing::White}}) {
+        const auto refused = check(bad);
+        ASSERT_FALSE(refused) << bad.against;
+        EXPECT_EQ(refused.error().kind, ErrorKind::Usage);
+    }
+}
+
 TEST(JobCheck, LimitLiesAbove0AndAtMost1) {
     const auto limited = [](double limit) {
         return static_cast<bool>(check(JobRequest{.kind = JobKind::VerifyWhite, .limit = limit}));

@@ -1,0 +1,36 @@
+#pragma once
+// Everything that judges a measured sample: its verdicts (docs/quality.md, proc/quality), each in
+// the sample's information, and whether they let it pass. How it lay is judged with the correction
+// of its tilt (sample_pose.h).
+
+#include <optional>
+
+#include "daemon/measurement.h"
+#include "proc/quality/translucency.h"
+#include "proc/table/sample_set.h"
+
+namespace gonio::daemon {
+
+/// By its table alone: reciprocity, energy, saturation. What is worked out again is judged again.
+void judgeTable(proc::SampleSet& sample);
+
+/// How it was captured: light, ambient, softness, drift.
+void judgeCapture(proc::SampleSet& sample,
+                  const Captured& captured,
+                  const RigReferences& references);
+
+/// On what it lay, if that was said, and the same sample as it was measured on the other backing.
+struct BackingEvidence {
+    std::optional<proc::Backing> backing;
+    std::optional<proc::SampleSet> other;
+};
+/// Usage error where `other` does not say that it lay on the other backing than `backing`.
+[[nodiscard]] Result<void> checkOther(const BackingEvidence& evidence);
+/// Translucency; the backing is kept in `info.extra`.
+void judgeBacking(proc::SampleSet& sample, const BackingEvidence& evidence);
+
+/// Quality error that names all that was refused and what to do about it, unless `force`; what is
+/// let pass with a warning goes to the log.
+[[nodiscard]] Result<void> accepted(const proc::SampleSet& sample, bool force);
+
+}  // namespace gonio::daemon
