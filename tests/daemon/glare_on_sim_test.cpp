@@ -71,7 +71,7 @@ public:
     Both measured(const std::string& name, const std::string& model) {
         const auto truth = proc::makeModel(model);
         EXPECT_TRUE(truth) << truth.error().message;
-        const test::Lab::Seen seen = lab.seen(model, sampleBracket(Effort::Standard));
+        const test::Lab::Seen seen = lab.seen(model, {.frames = 1});
         Both both{.after = darkCells(lab.calibrated(seen, Lower::Zero), **truth),
                   .before = darkCells(lab.calibrated(seen, Lower::Zero, Glare::LeftIn), **truth)};
         std::cout << name << ": median error at f = 0.5..2e-3 " << 100 * both.before.medianError

@@ -17,6 +17,7 @@
 #include "sim/in_process.h"
 #include "sim/optics.h"
 #include "sim/rig_errors.h"
+#include "tests/daemon/bracket_of.h"
 
 namespace gonio::daemon {
 namespace {
@@ -120,7 +121,7 @@ private:
     Repeat repeated(const Captured& captured, const BracketPlan& plan) {
         Sequencer sequencer(*rig_, profile_, nextPlanStep_);
         const State state = sequencer.states().front();
-        const auto frames = sequencer.bracket(state, plan);
+        const auto frames = test::bracketOf(sequencer, state, plan);
         EXPECT_TRUE(frames) << frames.error().message;
         const auto merged = proc::merge(*frames, state.band, captured.darks, profile_.noise);
         EXPECT_TRUE(merged) << merged.error().message;

@@ -55,7 +55,7 @@ How measured(const test::Lab& lab, const test::Lab::Seen& sample, double f, Lowe
 
 /// At 1e-3 / sr, where 3.2e-5 / sr of the black stand against 1e-5 / sr of the trap.
 void expectDarkSamplesAreLessUncertain(test::Lab& lab) {
-    const test::Lab::Seen seen = lab.seen(lambert(1e-3), sampleBracket(Effort::Standard));
+    const test::Lab::Seen seen = lab.seen(lambert(1e-3), {.frames = 1});
     const How black = measured(lab, seen, 1e-3, Lower::Black);
     const How zero = measured(lab, seen, 1e-3, Lower::Zero);
     EXPECT_GT(black.covered, 0.9);
@@ -65,7 +65,7 @@ void expectDarkSamplesAreLessUncertain(test::Lab& lab) {
 
 /// The goal of radiometry.md 4: total U(k=2) on f >= 0.01, which is worst at 0.01.
 void expectReferenceEffortReaches1Point6PerCent(test::Lab& lab) {
-    const test::Lab::Seen seen = lab.seen(lambert(0.01), sampleBracket(Effort::Reference));
+    const test::Lab::Seen seen = lab.seen(lambert(0.01), {.frames = 8});
     const How black = measured(lab, seen, 0.01, Lower::Black);
     const How zero = measured(lab, seen, 0.01, Lower::Zero);
     EXPECT_LT(zero.medianU, black.medianU);

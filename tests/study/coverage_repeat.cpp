@@ -50,12 +50,10 @@ double slopeAt(const Scatterer& surface, const Direction& wi, std::size_t cell) 
            f(surface, wi, theta, phi);
 }
 
-/// As `gonio measure --force` does it.
+/// As `gonio measure` does it.
 proc::SampleSet flattened(proc::SampleSet set, const proc::AngleUncertainty& uAngle) {
     const Radians uLens = uAngle(Direction::fromSpherical(kTypicalView, Radians(0)));
-    auto flat = daemon::referredToItsNormal(std::move(set), uLens, true);
-    if (!flat) throw std::runtime_error(flat.error().message);
-    return std::move(*flat);
+    return daemon::referredToItsNormal(std::move(set), uLens);
 }
 
 }  // namespace

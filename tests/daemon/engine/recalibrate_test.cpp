@@ -77,8 +77,7 @@ protected:
                             {0_deg, 20_deg},
                             {loaded->lens, loaded->white, loaded->black, *certified, profile},
                             {.name = "tile", .rigSerial = "R", .calibrationId = calibration});
-        ASSERT_TRUE(sample) << sample.error().message;
-        const auto bytes = proc::encodeGonio(*sample);
+        const auto bytes = proc::encodeGonio(sample);
         ASSERT_TRUE(bytes) << bytes.error().message;
         ASSERT_TRUE(store->addSample({.name = "tile", .rig = "R", .dateUtc = "t"},
                                      {.file = *bytes, .raw = raw(kBothLeds, kGrey)}));
