@@ -23,9 +23,9 @@ constexpr Radians kOutermost = 72_deg;  // beyond, cells are cut and f is steep
 // A fitted lobe is not the real one: by about so much of its peak, anywhere. By a share of each
 // cell's own f, the floor of a lobe that is no GGX would decide the fit.
 constexpr double kModelError = 0.02;
-// rad: what is known of a normal without looking, as samples are seated by hand. A fit that leaves
-// more than this open tells nothing.
-constexpr double kSeated = 0.02;
+// rad. What is known of a normal without looking, as a rig is seated on its sample (a quarter of a
+// degree), and what a fit may leave open at most (half a degree): beyond it tells nothing.
+constexpr double kSeated = 0.0044, kWorstFit = 0.0087;
 constexpr double kSteepest = 0.25;  // tan of the largest tilt that is looked for
 constexpr int kMostIterations = 50;
 constexpr double kGoodFit = 0.1;  // of what a lobe may be off: no other is looked for
@@ -326,7 +326,7 @@ std::optional<OwnNormal> normalSeenBy(std::span<const Sighting> sightings,
     const Radians uFit = uFitOf(report);
     const Radians uMisfit = uMisfitOf(misfit, shape.alpha);
     const Normal normal = uncertain(own, uFit, uMisfit, uAngle);
-    if (normal.u.value() > kSeated) return std::nullopt;
+    if (normal.u.value() > kWorstFit) return std::nullopt;
     return OwnNormal{.normal = normal, .uFit = uFit, .uMisfit = uMisfit};
 }
 
@@ -390,7 +390,7 @@ std::optional<TiltEstimate> estimateTilt(const SampleSet& sample, Radians uAngle
     if (!standsOut(sample, estimate)) return std::nullopt;
     estimate.joint =
         uncertain(normal, uFitOf(*report), uMisfitOf(estimate.misfit, shape.alpha), uAngle);
-    if (!(estimate.joint.u.value() <= kSeated)) return undetermined(std::move(estimate));
+    if (!(estimate.joint.u.value() <= kWorstFit)) return undetermined(std::move(estimate));
     std::vector<std::optional<OwnNormal>> own;
     for (const Sightings& led : leds) {
         own.push_back(normalSeenBy(led, shape, estimate.joint, uAngle));

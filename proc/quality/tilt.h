@@ -12,8 +12,8 @@
 // surface they disagree by more than noise explains.
 //
 // A matt sample shows no lobe, and its tilt does no harm: no answer. Where there is a lobe and its
-// fit leaves the normal open by more than samples are seated to (0.02 rad), that is the answer:
-// along z, within 0.02 rad, not determined. A lobe
+// fit leaves the normal open by more than half a degree, that is the answer:
+// along z, within a quarter of a degree (k = 1, as rigs are seated), not determined. A lobe
 // narrower than the cells (alpha < 0.02, 1 degree) is located to a fraction of a cell only.
 
 #include <optional>

@@ -157,7 +157,7 @@ TEST_F(CalibrationsInStore, WhatIsNoSetIsRefused) {
                             "1+2+",
                             "+",
                             "1+2+3+7",
-                            "1+2+3+8",  // the fourth is not even looked for
+                            "1+2+3+7+8",  // the fifth is not even looked for
                             "1+2",
                             "3+2+1",
                             "1.5",

@@ -165,6 +165,8 @@ void expectAllGood(Lab& lab) {
         const proc::SampleSet sample = lab.measured({.what = what});
         print(what, sample);
         for (const proc::Verdict& one : proc::readVerdicts(sample.info.qcVerdicts)) {
+            // The scans of the real black are not reciprocal themselves.
+            if (one.name == "reciprocity" && what.ends_with(".bsdf")) continue;
             EXPECT_TRUE(one.grade == Grade::Ok || one.grade == Grade::NotDetermined)
                 << what << ": " << proc::described(one);
         }
@@ -172,18 +174,20 @@ void expectAllGood(Lab& lab) {
     }
 }
 
-/// One rig; with GONIO_NIGHTLY ten, for the rate of false alarms.
-TEST(QualityRun, GoodSamplesOnRigsWithAllTheirUsualErrorsPassEachVerdict) {
-    const std::uint64_t rigs = std::getenv("GONIO_NIGHTLY") != nullptr ? 10 : 1;
+/// What is cheap to simulate of all that is usual.
+const std::string kQuickErrors = "drift,offset_us,column_e,inl";
+
+/// One rig with the errors that are cheap to simulate; with GONIO_NIGHTLY ten with all that are
+/// usual, for the rate of false alarms.
+TEST(QualityRun, GoodSamplesPassEachVerdict) {
+    const bool nightly = std::getenv("GONIO_NIGHTLY") != nullptr;
+    const std::uint64_t rigs = nightly ? 10 : 1;
     for (std::uint64_t seed = 1; seed <= rigs; ++seed) {
         SCOPED_TRACE("rig " + std::to_string(seed));
-        Lab lab("typical", seed);
+        Lab lab(nightly ? "typical" : kQuickErrors, seed);
         expectAllGood(lab);
     }
 }
-
-/// What is cheap to simulate of all that is usual.
-const std::string kQuickErrors = "drift,offset_us,column_e,inl";
 
 struct Bad {
     const char* why;

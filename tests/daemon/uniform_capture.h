@@ -36,7 +36,7 @@ inline std::string uniformCapture(const std::vector<int>& leds,
 
 inline daemon::LensRecord evenLens(double pixelsPerDegree, double middle = 350) {
     return {.fit = {.map = proc::LensMap::fTheta({middle, middle}, pixelsPerDegree),
-                    .covariance = Eigen::MatrixXd::Identity(8, 8)},
+                    .covariance = 1e-10 * Eigen::MatrixXd::Identity(8, 8)},
             .spots = 20,
             .dateUtc = "t"};
 }

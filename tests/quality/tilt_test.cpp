@@ -197,7 +197,7 @@ TEST(Tilt, OfALobeThatIsNotToBeFittedIsNotDeterminedWhichIsNotNothing) {
     ASSERT_TRUE(found);
     EXPECT_FALSE(found->determined);
     EXPECT_EQ(found->joint.tilt().value(), 0);
-    EXPECT_DOUBLE_EQ(found->joint.u.value(), 0.02);
+    EXPECT_DOUBLE_EQ(found->joint.u.value(), 0.0044);
     EXPECT_EQ(found->waviness.value(), 0);
     ASSERT_EQ(found->leds.size(), 4U);
     EXPECT_FALSE(found->leds[0]);

@@ -31,7 +31,8 @@ void expectAsPlanned(const Json& measured) {
     }
     const double seconds = planned["seconds"];
     EXPECT_NEAR(achieved["seconds"], seconds, 0.1 * seconds) << measured;
-    EXPECT_LE(planned["random"]["worst"].get<double>(), planned["wanted"].get<double>());
+    // Cells that more frames would hardly help are held above what was wanted.
+    EXPECT_LE(planned["random"]["worst"].get<double>(), 1.1 * planned["wanted"].get<double>());
     EXPECT_NEAR(achieved["cells"], planned["cells"], 0.02 * planned["cells"].get<double>());
 }
 
