@@ -258,6 +258,7 @@ TEST(QualityRun, EachBadSampleIsCaughtByTheVerdictThatIsAboutIt) {
 }
 
 TEST(QualityRun, TranslucentSamplesAreCaughtByTheOtherBacking) {
+    if (std::getenv("GONIO_NIGHTLY") == nullptr) GTEST_SKIP() << "a nightly study of a minute";
     using proc::Backing;
     Lab lab(kQuickErrors);
     const auto on = [&](Backing backing, double t, std::optional<proc::SampleSet> other) {

