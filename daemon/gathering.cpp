@@ -11,18 +11,6 @@ namespace {
 
 constexpr double kSmallest = 5e-4, kSigmas = 4;  // of offsets of effective times
 
-void describe(const Frame& frame, Band band, std::vector<proc::RawExposure>& bracket) {
-    if (bracket.empty() || bracket.back().captureId != frame.captureId) {
-        bracket.push_back({.captureId = frame.captureId,
-                           .granted = frame.exposure.granted,
-                           .level = frame.levels[band],
-                           .frames = 0,
-                           .blackLevel = frame.blackLevel,
-                           .celsius = frame.celsius});
-    }
-    ++bracket.back().frames;
-}
-
 /// How well the effective times are known beforehand: the light wanders between captures.
 proc::NominalUncertainty nominalOf(const RigProfile& profile) {
     proc::NominalUncertainty nominal;
@@ -53,6 +41,21 @@ void describe(const proc::ScaleReport& report, bool corrected, proc::RawExposure
 
 }  // namespace
 
+void note(const Frame& frame, Band band, std::vector<proc::RawExposure>& bracket) {
+    if (bracket.empty() || bracket.back().captureId != frame.captureId) {
+        bracket.push_back({.captureId = frame.captureId,
+                           .granted = frame.exposure.granted,
+                           .level = frame.levels[band],
+                           .frames = 0,
+                           .blackLevel = frame.blackLevel,
+                           .celsius = frame.celsius});
+    }
+    proc::RawExposure& exposure = bracket.back();
+    const std::size_t b = index(band);
+    const double milliamp = (frame.currentMinMilliamp[b] + frame.currentMaxMilliamp[b]) / 2;
+    exposure.milliamp += (milliamp - exposure.milliamp) / ++exposure.frames;
+}
+
 Result<Processed> Processing::operator()(State state,
                                          proc::MergeAccumulator& sums,
                                          std::vector<proc::RawExposure> exposures) const {
@@ -68,19 +71,24 @@ Result<Processed> Processing::operator()(State state,
         if (!merged) return merged.error();
     }
     for (proc::RawExposure& exposure : exposures) describe(scales, correct, exposure);
-    Processed done{.signal = glare.bin(*merged, binning),
+    Processed done{.signal = {},
                    .raw = {.merged = std::move(*merged), .bracket = std::move(exposures)},
                    .lightStep = step,
                    .compute = {}};
+    done.signal = signalOf(done.raw, corrections, glare, binning);
     done.compute = processing.elapsed();
     return done;
+}
+
+proc::MergeAccumulator Processing::accumulator() const {
+    return {Band::R, darks, profile.noise, profile.response};
 }
 
 Gathering::Gathering(driver::Rig& rig, const Processing& processing)
     : rig_(rig),
       processing_(processing),
-      brackets_{{{{}, {Band::R, processing.darks, processing.profile.noise}, {}},
-                 {{}, {Band::R, processing.darks, processing.profile.noise}, {}}}} {
+      brackets_{{{{}, processing.accumulator(), {}}, {{}, processing.accumulator(), {}}}},
+      watch_(processing.darks, processing.profile.noise, processing.white) {
     captured_.signals.resize(rig.identify().ledAngles.size());
 }
 
@@ -94,7 +102,8 @@ void Gathering::begin(State state) {
 Result<void> Gathering::add(const Frame& frame) {
     const Stopwatch adding(processing_.clock);
     Bracket& bracket = atHand();
-    describe(frame, bracket.state.band, bracket.exposures);
+    note(frame, bracket.state.band, bracket.exposures);
+    watch_.see(bracket.state, frame);
     Result<void> added = bracket.sums.add(frame);
     adding_ += adding.elapsed();
     return added;
@@ -128,6 +137,7 @@ Result<void> Gathering::settle() {
 
 Result<Captured> Gathering::finish() {
     if (Result<void> last = settle(); !last) return last.error();
+    captured_.oddFrames = watch_.odd();
     captured_.chiSquarePerFreedom = freedom_ > 0 ? chiSquare_ / freedom_ : 1;
     return std::move(captured_);
 }

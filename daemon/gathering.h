@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "daemon/alongside.h"
+#include "daemon/corrections.h"
 #include "daemon/measurement.h"
 #include "proc/optics/binning.h"
 #include "proc/optics/glare.h"
@@ -30,15 +31,22 @@ struct Processing {
     const proc::DarkLibrary& darks;
     const proc::Binning& binning;
     const proc::GlareFilter& glare;
+    const Corrections& corrections;
     const RigProfile& profile;
     const Clock& clock;
+    WhiteRates white{};  ///< what a frame without light is told by (frame_watch.h)
 
     /// Puts the effective times of the bracket right first, as far as its pictures tell that they
     /// are wrong. `exposures`: the bracket's, whose scales are set.
     [[nodiscard]] Result<Processed> operator()(State state,
                                                proc::MergeAccumulator& sums,
                                                std::vector<proc::RawExposure> exposures) const;
+    /// For the frames of any state.
+    [[nodiscard]] proc::MergeAccumulator accumulator() const;
 };
+
+/// Notes how a frame of a bracket was taken: a capture is one exposure of the bracket.
+void note(const Frame& frame, Band band, std::vector<proc::RawExposure>& bracket);
 
 class Gathering {
 public:
@@ -72,6 +80,7 @@ private:
     Seconds adding_{0};       ///< frames, of the state at hand
     Captured captured_;
     double chiSquare_ = 0, freedom_ = 0;
+    FrameWatch watch_;
     std::optional<Alongside<Processed>> running_;
 };
 

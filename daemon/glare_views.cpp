@@ -43,7 +43,7 @@ Result<void> GlareViews::take(const proc::Wedge& wedge,
     for (View* view : wanted) {
         if (view->wedge != wedge) continue;
         if (Result<void> on = bench_.step("glare LED " + std::to_string(led_)); !on) return on;
-        proc::MergeAccumulator sums(Band::G, darks, bench_.profile.noise);
+        proc::MergeAccumulator sums(Band::G, darks, bench_.profile.noise, bench_.profile.response);
         const Result<void> taken = sequencer.bracket(
             {led_, Band::G}, kBracket, [&](const Frame& frame) { return sums.add(frame); });
         if (!taken) return taken;

@@ -11,6 +11,7 @@
 #include "daemon/gathering.h"
 #include "daemon/glare_views.h"
 #include "daemon/sample_pose.h"
+#include "daemon/then_dark.h"
 #include "proc/core/median.h"
 #include "proc/core/number_text.h"
 #include "proc/optics/spot.h"
@@ -79,7 +80,8 @@ Result<LensRecord> takeLens(const Bench& bench, const PlaceMirror& place) {
                                                  bench.profile.exposures.front(),
                                                  kMirrorFrames);
             if (!frames) return frames.error();
-            const auto merged = proc::merge(*frames, Band::G, *darks, bench.profile.noise);
+            const auto merged =
+                proc::merge(*frames, Band::G, *darks, bench.profile.noise, bench.profile.response);
             if (!merged) return merged.error();
             const Result<proc::Spot> spot = proc::findSpot(*merged);
             if (!spot) return spot.error();
@@ -121,6 +123,7 @@ Result<Captured> capturePlacement(const Bench& bench,
                         {.darks = *darks,
                          .binning = *binning,
                          .glare = *glare,
+                         .corrections = bench.corrections,
                          .profile = bench.profile,
                          .clock = bench.clock});
     const std::vector<State> states = sequencer.states();
@@ -138,14 +141,6 @@ Result<Captured> capturePlacement(const Bench& bench,
     captured->compute += prepared;
     captured->darks = std::move(*darks);
     return captured;
-}
-
-/// However a measurement ended: dark, and nothing on its way. A rig that does not hear it goes dark
-/// by itself; what was measured is measured.
-template <class Measured>
-Measured thenDark(driver::Rig& rig, Measured measured) {
-    (void)rig.darken();
-    return measured;
 }
 
 /// The median over the cells present, relative, k = 1; empty: there are none.

@@ -9,6 +9,8 @@
 #include <optional>
 #include <string>
 
+#include "daemon/corrections.h"
+#include "daemon/frame_watch.h"
 #include "daemon/light_watch.h"
 #include "daemon/profile.h"
 #include "daemon/references.h"
@@ -36,6 +38,10 @@ struct Bench {
     std::function<void(const proc::Progress&)> outlook = [](const proc::Progress&) {};
     /// The lens's glare, which signals are put right by; empty: none is taken off.
     std::optional<proc::GlareSpread> glare{};
+    /// What else they are put right by.
+    Corrections corrections{};
+    /// A dark library of the sensor's temperature (stored_darks.h); empty: there is none.
+    std::vector<proc::DarkFrame> darks{};
 };
 
 /// The window that is read: the square in the middle of the sensor.
@@ -60,6 +66,7 @@ struct Captured {
     PlacementSignals signals;
     proc::RawCapture raw;
     std::vector<LightStep> lightSteps;  ///< in the order of the states
+    std::vector<OddFrame> oddFrames;    ///< as they came
     double chiSquarePerFreedom = 0;     ///< of all merges; 1 where noise alone differs
     Seconds compute{0};            ///< of merging and binning, though the rig went on meanwhile
     proc::DarkLibrary darks;       ///< taken over the sample

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "daemon/then_dark.h"
 #include "proc/plan/shared_choice.h"
 #include "proc/radiance/merge.h"
 
@@ -46,13 +47,6 @@ double sensorCelsius(const Frame& frame) {
     return frame.celsius[kSensor].value_or(kUsual);
 }
 
-/// However a run ended: dark, and nothing on its way.
-template <class Taken>
-Taken thenDark(driver::Rig& rig, Taken taken) {
-    (void)rig.darken();
-    return taken;
-}
-
 }  // namespace
 
 PlannedRun::PlannedRun(const Bench& bench,
@@ -84,9 +78,22 @@ std::vector<KnownShot> PlannedRun::pilotShots(State state) const {
     return shots;
 }
 
+/// The dark library is of this window, and of all exposures that may be planned.
+bool PlannedRun::holdsDarks(const Window& window) const {
+    std::vector<Seconds> wanted = proc::pilotExposures(rig_);
+    wanted.insert(wanted.end(), rig_.exposures.begin(), rig_.exposures.end());
+    return std::all_of(wanted.begin(), wanted.end(), [&](Seconds exposure) {
+        return std::any_of(
+            bench_.darks.begin(), bench_.darks.end(), [&](const proc::DarkFrame& dark) {
+                return dark.window == window && dark.exposure.requested == asked(exposure);
+            });
+    });
+}
+
 Result<const proc::Plan*> PlannedRun::plan() {
     const Result<Window> window = configureWindow(bench_.rig);
     if (!window) return window.error();
+    if (holdsDarks(*window)) rig_.darkFramesHeld = bench_.darks.front().frames;
     seeing_.emplace([this, window = *window]() -> Result<void> {
         const proc::LensMap& map = references_.lens.fit.map;
         binning_.emplace(map, window, kField);
@@ -194,22 +201,33 @@ Result<void> PlannedRun::takeDarks() {
                       const Frame& frame) { return addDark(shots[shot].shot.exposure, frame); },
          .done = [&](std::size_t) { return bench_.step("dark frames"); }});
     if (!taken) return taken;
+    std::map<Microseconds, const proc::DarkFrame*> held;
+    if (rig_.darkFramesHeld > 0) {
+        for (const proc::DarkFrame& dark : bench_.darks) {
+            held[dark.exposure.requested] = &dark;
+            darks_.add(dark);
+        }
+    }
     for (const auto& [exposure, sums] : darkSums_) {
         Result<proc::DarkFrame> dark = sums.mean();
         if (!dark) return dark.error();
-        darks_.add(std::move(*dark));
+        const auto same = held.find(exposure);
+        darks_.add(same != held.end() ? proc::pooled(*same->second, *dark) : std::move(*dark));
     }
     darkSums_.clear();
     return {};
 }
 
 Result<Captured> PlannedRun::takeStates() {
-    Gathering gathering(bench_.rig,
-                        {.darks = darks_,
-                         .binning = *binning_,
-                         .glare = *glare_,
-                         .profile = bench_.profile,
-                         .clock = bench_.clock});
+    Gathering gathering(
+        bench_.rig,
+        {.darks = darks_,
+         .binning = *binning_,
+         .glare = *glare_,
+         .corrections = bench_.corrections,
+         .profile = bench_.profile,
+         .clock = bench_.clock,
+         .white = whiteRates(references_.white.signals, pilots_.front().front().window)});
     std::vector<KnownShot> shots;
     std::vector<std::size_t> stateOf;  // of each shot; behind the last: the repeated pilots
     const auto list = [&](std::size_t state, const KnownShot& shot) {
@@ -271,9 +289,12 @@ Result<Captured> PlannedRun::takeStates() {
 Result<Repeat> PlannedRun::repeated(const std::vector<Frame>& again) const {
     const State state = states_.front();
     const auto signalOf = [&](const std::vector<Frame>& frames) -> Result<proc::CellSignal> {
-        const auto merged = proc::merge(frames, state.band, darks_, bench_.profile.noise);
+        auto merged =
+            proc::merge(frames, state.band, darks_, bench_.profile.noise, bench_.profile.response);
         if (!merged) return merged.error();
-        return glare_->bin(*merged, *binning_);
+        proc::RawState raw{.merged = std::move(*merged), .bracket = {}};
+        for (const Frame& frame : frames) note(frame, state.band, raw.bracket);
+        return daemon::signalOf(raw, bench_.corrections, *glare_, *binning_);
     };
     Result<proc::CellSignal> first = signalOf(pilots_.front());
     if (!first) return first.error();

@@ -42,6 +42,7 @@ private:
     [[nodiscard]] Result<void> learn(std::size_t state);
     [[nodiscard]] Result<void> settle();
     [[nodiscard]] proc::PlanInput input() const;
+    [[nodiscard]] bool holdsDarks(const Window& window) const;
     [[nodiscard]] Result<void> addDark(Microseconds exposure, const Frame& frame);
     [[nodiscard]] Result<void> takeDarks();
     [[nodiscard]] Result<Captured> takeStates();

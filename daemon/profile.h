@@ -7,6 +7,7 @@
 
 #include "proc/core/result.h"
 #include "proc/core/units.h"
+#include "proc/radiance/linearity.h"
 #include "proc/radiance/noise.h"
 
 namespace gonio::daemon {
@@ -23,6 +24,7 @@ struct RigProfile {
     std::string hash;   ///< of the file's bytes: eight hexadecimal digits
     int cameraUsb = 2;  ///< the camera's USB, 2 or 3; a rig tells its own frame period
     proc::SensorNoise noise;
+    proc::Linearity response{};            ///< of the sensor; the identity unless it was measured
     Radians wedgeTolerance;                ///< of the mirror's wedges about either axis, k = 1
     double ledDrift = 0;                   ///< of the light between two captures, relative, k = 1
     double exposureRatio = 0;              ///< of an effective exposure time, relative, k = 1

@@ -98,7 +98,8 @@ void judgeCapture(proc::SampleSet& sample,
                   const RigReferences& references) {
     const auto change = repeatChange(sample, captured.repeat);
     put(sample,
-        {lightVerdict(captured.lightSteps),
+        {framesVerdict(captured.oddFrames),
+         lightVerdict(captured.lightSteps),
          ambientOf(sample, captured, references),
          proc::softnessVerdict(change),
          proc::driftVerdict(change)});

@@ -14,7 +14,7 @@ namespace gonio::daemon {
 /// By its table alone: reciprocity, energy, saturation. What is worked out again is judged again.
 void judgeTable(proc::SampleSet& sample);
 
-/// How it was captured: light, ambient, softness, drift.
+/// How it was captured: frames, light, ambient, softness, drift.
 void judgeCapture(proc::SampleSet& sample,
                   const Captured& captured,
                   const RigReferences& references);

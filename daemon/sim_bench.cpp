@@ -77,6 +77,7 @@ Result<SimState> readSimState(const Store& store) {
         state.wedge.aboutX = Radians::fromDegrees(json.at("tilt_x_deg").get<double>());
         state.wedge.aboutY = Radians::fromDegrees(json.at("tilt_y_deg").get<double>());
         state.rigErrors = json.value(kRigErrors, "none");
+        state.turned = Radians::fromDegrees(json.value("turned_deg", 0.0));
         state.sampleErrors = sampleErrorsFrom(json);
         if (const auto good = sim::check(state.sampleErrors); !good) {
             throw std::runtime_error(good.error().message);
@@ -102,7 +103,8 @@ Result<void> writeSimState(const Store& store, const SimState& state) {
                        {"translucency", state.sampleErrors.translucency},
                        {"backing", nameOf(state.sampleErrors.backing)},
                        {"softness", state.sampleErrors.softness},
-                       {"ambient", state.sampleErrors.ambient}};
+                       {"ambient", state.sampleErrors.ambient},
+                       {"turned_deg", state.turned.degrees()}};
     return proc::writeFile(store.simState(),
                            json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
@@ -124,6 +126,7 @@ Result<sim::Placement> makePlacement(const SimState& state, const Store& store) 
         const bool white = state.placed == "white";
         placement.role = white ? sim::Role::White : sim::Role::Black;
         placement.surface = white ? references->white : references->black;
+        if (white) placement.turned = state.turned;
     } else {
         Result<Material> material = openMaterial(state.placed, store.root());
         if (!material) return material.error();

@@ -35,10 +35,10 @@ struct SampleRecord {
 struct CalibrationRecord {
     std::int64_t id = 0;  ///< ascending with time
     std::string rig;      ///< serial
-    std::string kind;     ///< "mirror", "black", "white" or "zero"
+    std::string kind;     ///< "mirror", "black", "white", "zero", "flat", "leds", "sensor", "dark"
     std::string dateUtc;
     std::string profileHash;          ///< of the rig profile; empty: not known
-    std::optional<double> celsius{};  ///< of the LED board when it was taken
+    std::optional<double> celsius{};  ///< of the LED board when it was taken; dark: of the sensor
     std::filesystem::path file;
     std::filesystem::path raw;  ///< empty: there is none
 };

@@ -79,7 +79,11 @@ Limits Device::limits() const {
 }
 
 Temperatures Device::temperatures() const {
-    return {2600, static_cast<std::int16_t>(std::lround(100 * config_.rig.celsius)), 2500, 2300};
+    const double board = 26 + drift_.boardKelvin();
+    return {static_cast<std::int16_t>(std::lround(100 * board)),
+            static_cast<std::int16_t>(std::lround(100 * config_.rig.celsius)),
+            2500,
+            2300};
 }
 
 Status Device::status() const {

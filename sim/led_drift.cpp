@@ -30,6 +30,14 @@ double LedDrift::heat(int led, Band band) const {
     return heat_[static_cast<std::size_t>(led)][band];
 }
 
+double LedDrift::boardKelvin() const {
+    constexpr double kKelvin = 3;
+    double sum = 0;
+    for (const LedBands& led : heat_)
+        for (const Band band : kBands) sum += led[band];
+    return kKelvin * sum;
+}
+
 double LedDrift::wander(int led, Band band, std::uint64_t planStep) const {
     const auto stream = static_cast<std::uint64_t>(led) * 3 + index(band);
     const std::uint64_t key = mixed(mixed(seed_, 0x64726966), stream);

@@ -16,7 +16,8 @@
 // From a plan step on, all LEDs may give another share of their light at once: a step multiplies
 // the output by 1 + its size.
 //
-// The drive current that the rig measures does not show any of it.
+// The LED board is warmer than its surroundings by 3 K for each LED and band at full heat, which
+// its sensor shows; the drive current that the rig measures shows none of it.
 
 #include <array>
 #include <cstdint>
@@ -40,6 +41,8 @@ public:
     [[nodiscard]] LedBands output(int led, std::uint64_t planStep) const;
 
     [[nodiscard]] double heat(int led, Band band) const;
+    /// Of the LED board, over that of a dark one.
+    [[nodiscard]] double boardKelvin() const;
     [[nodiscard]] double wander(int led, Band band, std::uint64_t planStep) const;
 
 private:

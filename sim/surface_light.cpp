@@ -15,6 +15,11 @@ Pose poseOf(const Placement& placement, const Flaws& flaws, int led) {
     return {placement.wedge, spots[static_cast<std::size_t>(led)]};
 }
 
+Direction turnedBy(Radians angle, const Direction& wo) {
+    if (angle == Radians()) return wo;
+    return Direction::fromSpherical(wo.theta(), wo.phi() + angle);
+}
+
 std::vector<SourcePoint> sourceOf(const Flaws& flaws, int led, const Pose& pose) {
     const Direction middle = ledDirection(led);
     std::vector<SourcePoint> points{{middle, 1}};
@@ -32,6 +37,7 @@ SurfaceLight::SurfaceLight(const Placement& placement, const Flaws& flaws, int l
     : surface_(placement.surface),
       pose_(poseOf(placement, flaws, led)),
       source_(sourceOf(flaws, led, pose_)),
+      turned_(placement.turned),
       crosstalk_(flaws.rig.crosstalk) {
     if (placement.role == Role::Sample) subsurface_ = subsurface(placement.errors);
     if (placement.role == Role::White) white_ = flaws.references.white(led);
@@ -56,7 +62,7 @@ LedBands SurfaceLight::towards(const Direction& wo) const {
     const Direction out = pose_.seenFromSurface(wo);
     if (!out.aboveHorizon()) return {};
     const LedBands f = bandMixture(meanOverSource(out) + subsurface_, crosstalk_);
-    const LedBands white = white_.factor(wo);
+    const LedBands white = white_.factor(turnedBy(-turned_, wo));
     LedBands light;
     for (Band b : kBands) light[b] = f[b] * out.z() * white[b] * black_;
     return light;

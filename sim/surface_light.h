@@ -28,6 +28,7 @@ private:
     std::shared_ptr<const Scatterer> surface_;  // the placement's
     Pose pose_;
     std::vector<SourcePoint> source_;  // in the surface's frame, the middle first
+    Radians turned_;
     double crosstalk_;
     LedBands subsurface_;
     WhiteErrors white_;

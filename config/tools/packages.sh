@@ -45,6 +45,8 @@ configure() {
     local preset=$1
     shift
     ! command -v ccache >/dev/null || set -- "$@" -DCMAKE_CXX_COMPILER_LAUNCHER=ccache
+    # With precompiled headers, which may not ask for the time of day; and a cold cache costs nothing.
+    export CCACHE_SLOPPINESS=pch_defines,time_macros CCACHE_DEPEND=1
     mkdir -p "build/$preset"
     if ! cmake --preset "$preset" "$@" >"build/$preset/configure.log" 2>&1; then
         tail -n 30 "build/$preset/configure.log"

@@ -243,7 +243,8 @@ Result<ApiReply> getCalibrations(const Call& call) {
     if (!store) return store.error();
     const auto calibrations = store->calibrations();
     if (!calibrations) return calibrations.error();
-    const RigNow now = call.engine.rigNow();
+    RigNow now = call.engine.rigNow();
+    now.profileHash = measuredProfile(*store, call.engine.profile(), now).hash;
     Json list = Json::array();
     for (const CalibrationRecord& one : *calibrations) {
         list.push_back(toJson(one, whyNot(one, now, call.engine.profile().validity)));
@@ -268,6 +269,7 @@ Result<ApiReply> postJob(const Call& call) {
     const std::optional<std::string> backingName = fields.optionalText("backing");
     JobRequest job{.name = fields.text("name"),
                    .notes = fields.text("notes"),
+                   .turned = fields.flag("turned"),
                    .force = fields.flag("force"),
                    .calibration = fields.text("calibration"),
                    .against = fields.text("against")};
@@ -344,6 +346,7 @@ Result<ApiReply> postPlace(const Call& call) {
                              .backing = fields.optionalText("backing").value_or("black"),
                              .softness = fields.number("softness").value_or(0),
                              .ambient = fields.number("ambient").value_or(0),
+                             .turnedDegrees = fields.number("turned_deg").value_or(0),
                              .seed = fields.whole("seed"),
                              .serial = fields.optionalText("serial"),
                              .systematic = fields.optionalText("systematic"),
@@ -363,7 +366,8 @@ Result<ApiReply> postPlace(const Call& call) {
                   {"translucency", place.translucency},
                   {"backing", place.backing},
                   {"softness", place.softness},
-                  {"ambient", place.ambient}});
+                  {"ambient", place.ambient},
+                  {"turned_deg", place.turnedDegrees}});
 }
 
 struct Route {

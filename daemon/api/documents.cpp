@@ -40,8 +40,7 @@ Json runningJob(const JobStatus& job) {
 
 Json toJson(const EngineStatus& status) {
     Json calibrations = Json::object();
-    for (const std::string kind : {"mirror", "black", "white", "zero"})
-        calibrations[kind] = nullptr;
+    for (const std::string_view kind : kCalibrationKinds) calibrations[kind] = nullptr;
     for (const CalibrationDate& one : status.calibrations) calibrations[one.kind] = one.dateUtc;
     Json rig = {{"kind", status.portKind},
                 {"state", std::string(name(status.state))},

@@ -37,12 +37,17 @@ enum class Reference {
     Mirror,
     Black,
     White,
-    Zero
+    Zero,
+    Flat,
+    Sensor,
+    Leds,
+    Dark
 };
 Result<void> calibrate(const CommonOptions& common, Reference reference);
 
 struct VerifyOptions {
     double limit = 0.01;  ///< largest relative change that passes
+    bool turned = false;  ///< the tile was turned about its normal
 };
 Result<void> verifyWhite(const CommonOptions& common, const VerifyOptions& options);
 

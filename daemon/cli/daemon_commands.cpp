@@ -53,7 +53,7 @@ void printStatus(const Json& status) {
              ? textOr(session.at("name"), "") + ", since " + textOr(session.at("opened"), "")
              : "none"}};
     for (const auto& [kind, date] : status.at("calibrations").items()) {
-        const bool optional = kind == "zero";
+        const bool optional = kind != "mirror" && kind != "black" && kind != "white";
         rows.push_back({kind,
                         textOr(date,
                                optional ? "none, which is no obstacle"

@@ -26,7 +26,7 @@ std::string seconds(const Json& json, const char* member) {
 }
 
 std::string nameOf(Reference reference) {
-    const char* names[] = {"mirror", "black", "white", "zero"};
+    const char* names[] = {"mirror", "black", "white", "zero", "flat", "sensor", "leds", "dark"};
     return names[static_cast<int>(reference)];
 }
 
@@ -37,7 +37,41 @@ std::string glareLine(const Json& done) {
            fixed(100 * done.at("glare_u_share").get<double>(), 4) + " %)";
 }
 
+std::string withU(const Json& done, const std::string& member, int digits) {
+    return fixed(done.at(member).get<double>(), digits) + " (u " +
+           fixed(done.at("u_" + member).get<double>(), digits) + ")";
+}
+
+/// What was found out about the rig itself.
+std::string foundLine(const Json& done, Reference reference) {
+    switch (reference) {
+        case Reference::Flat:
+            return "pixels differ by " + perCent(done.at("spread").get<double>()) +
+                   " (k = 1), each known to " + perCent(done.at("u_response").get<double>());
+        case Reference::Sensor:
+            return "gain " + withU(done, "electrons_per_dn", 3) + " electrons per DN, read noise " +
+                   withU(done, "read_noise_electrons", 2) + " electrons, non-linearity " +
+                   fixed(done.at("inl_percent").get<double>(), 3) + " % of the range, " +
+                   fixed(done.at("left_percent").get<double>(), 3) + " % once it is corrected";
+        case Reference::Leds: {
+            std::string line = "light per kelvin of the LED board:";
+            for (const auto& [band, fit] : done.at("bands").items())
+                line += " " + band + " " + fixed(100 * fit.at("per_kelvin").get<double>(), 3) +
+                        " % (u " + fixed(100 * fit.at("u_per_kelvin").get<double>(), 3) + " %)";
+            return line;
+        }
+        default:
+            return std::to_string(done.at("exposures").get<int>()) + " exposures, " +
+                   std::to_string(done.at("frames").get<int>()) + " dark frames of each, " +
+                   std::to_string(done.at("hot_pixels").get<int>()) + " hot pixels";
+    }
+}
+
 std::string calibratedLine(const Json& done, Reference reference) {
+    if (reference >= Reference::Flat) {
+        return nameOf(reference) + " of " + text(done, "rig") + ": " + foundLine(done, reference) +
+               "; " + seconds(done, "rig_seconds") + " on the rig";
+    }
     if (reference == Reference::Mirror) {
         return "lens map of " + text(done, "rig") + ": " +
                std::to_string(done.at("spots").get<int>()) + " mirror spots, " +
@@ -136,12 +170,19 @@ Result<void> calibrate(const CommonOptions& common, Reference reference) {
 
 Result<void> verifyWhite(const CommonOptions& common, const VerifyOptions& options) {
     const DaemonClient client(common.socketPath());
-    const Json request{{"kind", "verify-white"}, {"limit", options.limit}};
+    const Json request{
+        {"kind", "verify-white"}, {"limit", options.limit}, {"turned", options.turned}};
     const auto done = FollowedJob(common, client, "white").run(request.dump());
     return shown(common, done, [&](const Json& json) {
         std::cout << "white has changed by at most "
                   << perCent(json.at("worst_change").get<double>()) << " since "
-                  << text(json, "calibrated") << "\n";
+                  << text(json, "calibrated");
+        if (json.at("turned").get<bool>()) {
+            std::cout << "; turned, it differs from itself by "
+                      << perCent(json.at("texture").get<double>()) << " (its certificate says "
+                      << perCent(json.at("certified_per_direction").get<double>()) << ")";
+        }
+        std::cout << "\n";
     });
 }
 

@@ -108,6 +108,7 @@ void Program::addSim() {
     sub->add_option("--backing", place.backing, "what lies below it: black or white");
     sub->add_option("--soft", place.softness, "excess of a pressed sample's lobe, which relaxes");
     sub->add_option("--ambient", place.ambient, "light that leaks in, as of this f cos(theta)");
+    sub->add_option("--turned", place.turnedDegrees, "the white, about its normal, degrees");
 
     sub = command(*sim, "score", "hold measured samples against the simulated rig's truth", [this] {
         return simScore(common, score);
@@ -117,8 +118,8 @@ void Program::addSim() {
 }
 
 void Program::addCalibration() {
-    CLI::App* parent =
-        app.add_subcommand("calibrate", "take a reference: mirror, black, white or zero");
+    CLI::App* parent = app.add_subcommand(
+        "calibrate", "take a reference: mirror, black, white, zero; or measure the rig itself");
     parent->require_subcommand(1);
     parent->fallthrough();
     const auto add = [&](const std::string& name, const std::string& help, Reference reference) {
@@ -128,6 +129,12 @@ void Program::addCalibration() {
     add("black", "dark frames and the black reference", Reference::Black);
     add("white", "the white reference", Reference::White);
     add("zero", "the zero reference, a light trap (optional)", Reference::Zero);
+    add("flat", "the flat field, from the white reference (optional)", Reference::Flat);
+    add("sensor",
+        "gain, read noise and linearity, from the white reference (optional); before black",
+        Reference::Sensor);
+    add("leds", "the LEDs' warm-up, from the white reference (optional)", Reference::Leds);
+    add("dark", "the dark library at the sensor's temperature (optional)", Reference::Dark);
 
     CLI::App* sub = command(
         app, "verify-white", "how far the white reference has changed", [this]() -> Result<void> {
@@ -139,6 +146,8 @@ void Program::addCalibration() {
             return verifyWhite(common, verify);
         });
     sub->add_option("--limit", limit, "largest change that passes, such as 1%");
+    sub->add_flag(
+        "--turned", verify.turned, "the tile was turned about its normal: is it like itself, too?");
 }
 
 void Program::addGoal(CLI::App* sub) {

@@ -189,9 +189,9 @@ RigNow Engine::rigNow() const {
 
 void Engine::publishCalibrations() {
     std::vector<CalibrationDate> dates;
-    for (const std::string kind : {"mirror", "black", "white", "zero"}) {
-        const auto newest = store_.newestCalibration(status().serial, kind);
-        if (newest && *newest) dates.push_back({kind, (*newest)->dateUtc});
+    for (const std::string_view kind : kCalibrationKinds) {
+        const auto newest = store_.newestCalibration(status().serial, std::string(kind));
+        if (newest && *newest) dates.push_back({std::string(kind), (*newest)->dateUtc});
     }
     publish([&](EngineStatus& status) { status.calibrations = std::move(dates); });
 }

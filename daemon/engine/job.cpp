@@ -6,14 +6,18 @@
 namespace gonio::daemon {
 namespace {
 
-constexpr std::array<std::string_view, 8> kKinds{"calibrate-mirror",
-                                                 "calibrate-black",
-                                                 "calibrate-white",
-                                                 "calibrate-zero",
-                                                 "verify-white",
-                                                 "measure",
-                                                 "plan",
-                                                 "recalibrate"};
+constexpr std::array<std::string_view, 12> kKinds{"calibrate-mirror",
+                                                  "calibrate-black",
+                                                  "calibrate-white",
+                                                  "calibrate-zero",
+                                                  "calibrate-flat",
+                                                  "calibrate-sensor",
+                                                  "calibrate-leds",
+                                                  "calibrate-dark",
+                                                  "verify-white",
+                                                  "measure",
+                                                  "plan",
+                                                  "recalibrate"};
 constexpr std::size_t kLongestNotes = 4096;
 
 Result<void> checkBacking(const JobRequest& request) {

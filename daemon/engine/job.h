@@ -23,6 +23,10 @@ enum class JobKind {
     CalibrateBlack,
     CalibrateWhite,
     CalibrateZero,
+    CalibrateFlat,
+    CalibrateSensor,
+    CalibrateLeds,
+    CalibrateDark,
     VerifyWhite,
     Measure,
     Plan,        ///< what measuring would take and achieve: pilots only
@@ -38,6 +42,7 @@ struct JobRequest {
     CaptureGoal goal{};       ///< measure and plan
     std::string notes;        ///< the operator's, kept with the sample
     double limit = 0.01;      ///< verify-white: the largest relative change that passes
+    bool turned = false;      ///< verify-white: the tile lies turned about its normal
     bool force = false;       ///< measure: with calibrations that are no longer good, too
     std::string calibration;  ///< recalibrate: which (calibrations.h); empty: the newest
     std::optional<proc::Backing>

@@ -77,9 +77,15 @@ Result<Original> original(Store& store, const std::string& name) {
 Result<std::string> workedOut(const Desk& desk, const Original& before, const CalibrationSet& set) {
     const Result<LoadedSet> loaded = loadSet(desk.store, set);
     if (!loaded) return loaded.error();
-    const Result<References> certified = loadReferences(desk.profile);
+    RigProfile profile = desk.profile;
+    if (set.sensor) {
+        const Result<SensorRecord> sensor = readSensor(*set.sensor);
+        if (!sensor) return sensor.error();
+        profile = withSensor(std::move(profile), *sensor, set.sensor->id);
+    }
+    const Result<References> certified = loadReferences(profile);
     if (!certified) return certified.error();
-    const Result<PlacementSignals> signals = binned(before.record.raw, loaded->lens);
+    const Result<PlacementSignals> signals = binned(before.record.raw, loaded->view);
     if (!signals) return signals.error();
     const Result<void> complete =
         checkComplete(*signals, *loaded, before.record, before.sample.leds.size());
@@ -90,7 +96,7 @@ Result<std::string> workedOut(const Desk& desk, const Original& before, const Ca
     // Whatever its verdicts say now: it was accepted when it was measured.
     proc::SampleSet sample = calibrateSample(*signals,
                                              anglesOf(before.sample),
-                                             referencesOf(*loaded, *certified, desk.profile),
+                                             referencesOf(*loaded, *certified, profile),
                                              std::move(info));
     judgeTable(sample);
     return proc::encodeGonio(sample);

@@ -34,6 +34,13 @@ Result<void> checkErrors(const PlaceRequest& request) {
             return refused("only the mirror or a model: can be tilted");
         }
     }
+    if (!(std::abs(request.turnedDegrees) <= 180)) {
+        return refused("turned by " + shortest(request.turnedDegrees) +
+                       ", wanted -180 to 180 degrees");
+    }
+    if (request.turnedDegrees != 0 && request.what != "white") {
+        return refused("only the white can be turned");
+    }
     if (request.backing != "black" && request.backing != "white") {
         return refused("backing '" + request.backing + "': wanted black or white");
     }
@@ -128,6 +135,7 @@ Result<bool> SimPort::place(const PlaceRequest& request) {
     next.placed = std::move(*placed);
     next.wedge = {.aboutX = Radians::fromDegrees(request.tiltXDegrees),
                   .aboutY = Radians::fromDegrees(request.tiltYDegrees)};
+    next.turned = Radians::fromDegrees(request.turnedDegrees);
     next.sampleErrors = sampleErrorsOf(request);
     const bool another = next.seed != state_.seed || next.serial != state_.serial ||
                          next.systematic != state_.systematic || next.rigErrors != state_.rigErrors;

@@ -34,7 +34,8 @@ json toJson(const RawExposure& e) {
             {"black_level", e.blackLevel},
             {"celsius", celsius},
             {"scale", e.scale},
-            {"u_scale", e.uScale}};
+            {"u_scale", e.uScale},
+            {"milliamp", e.milliamp}};
 }
 
 /// The library would turn 70000 into the level 4464, and 1e300 into anything.
@@ -57,6 +58,7 @@ RawExposure exposureFrom(const json& j) {
     e.blackLevel = integerFrom<std::uint16_t>(j.at("black_level"));
     e.scale = j.value("scale", 1.0);
     e.uScale = j.value("u_scale", 0.0);
+    e.milliamp = j.value("milliamp", 0.0);
     const json& celsius = j.at("celsius");
     for (std::size_t i = 0; i < e.celsius.size(); ++i) {
         if (!celsius.at(i).is_null()) e.celsius[i] = celsius.at(i).get<double>();

@@ -30,6 +30,7 @@ struct RawExposure {
     /// Effective time over nominal, as the bracket's own pictures tell it (group_scales.h), and its
     /// standard uncertainty.
     double scale = 1, uScale = 0;
+    double milliamp = 0;  ///< measured current of the lit band, mean over the frames; 0: not known
 
     bool operator==(const RawExposure&) const = default;
 };

@@ -133,6 +133,18 @@ std::span<const HotPixel> DarkFrame::hotInRow(int y) const {
     return {first, std::upper_bound(first, hot.end(), y, behind)};
 }
 
+DarkFrame pooled(const DarkFrame& one, const DarkFrame& other) {
+    DarkFrame both = one.frames >= other.frames ? one : other;
+    both.frames = one.frames + other.frames;
+    const double share = static_cast<double>(one.frames) / both.frames, rest = 1 - share;
+    both.varianceOfMean = share * share * one.varianceOfMean + rest * rest * other.varianceOfMean;
+    const std::span<const float> a = one.mean.pixels(), b = other.mean.pixels();
+    const std::span<float> mean = both.mean.pixels();
+    for (std::size_t i = 0; i < mean.size(); ++i)
+        mean[i] = static_cast<float>(share * a[i] + rest * b[i]);
+    return both;
+}
+
 void DarkLibrary::add(DarkFrame dark) {
     const Nanoseconds key = dark.exposure.granted;
     byExposure_.insert_or_assign(key, std::move(dark));

@@ -65,6 +65,10 @@ private:
 [[nodiscard]] Result<DarkFrame> averageDark(std::span<const Frame> frames,
                                             const SensorNoise& noise);
 
+/// One mean of the frames of both, which are of the same exposure, window and gain. The hot pixels
+/// are those of the one with more frames.
+[[nodiscard]] DarkFrame pooled(const DarkFrame& one, const DarkFrame& other);
+
 class DarkLibrary {
 public:
     /// Replaces an earlier one of the same exposure.

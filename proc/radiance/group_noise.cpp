@@ -3,20 +3,6 @@
 #include <algorithm>
 
 namespace gonio::proc {
-namespace {
-
-/// The sums of a proportional sensor: of n samples n times the correction of their mean.
-void makeLinear(std::span<const float> dark, const Linearity& linearity, GroupBlock& block) {
-    for (std::size_t x = 0; x < dark.size(); ++x) {
-        const double n = block.count[x];
-        if (n == 0) continue;
-        const auto darkDn = static_cast<double>(dark[x]);
-        block.net[x] +=
-            n * (linearity.correction(block.net[x] / n + darkDn) - linearity.correction(darkDn));
-    }
-}
-
-}  // namespace
 
 GroupFigures figuresOf(const GroupSums& group, const BracketSums& sums) {
     const double k = sums.noise.electronsPerDn;
@@ -33,7 +19,8 @@ void readGroup(const BracketSums& sums, std::size_t group, const BlockAt& at, Gr
     const GroupSums& of = sums.groups[group];
     const auto dark = at.of(of.dark->mean);
     unpackTallies(at.of(of.tallies), dark, out);
-    if (!sums.linearity.identity()) makeLinear(dark, sums.linearity, out);
+    const Linearity& bent = sums.linearity;
+    if (!bent.identity()) straighten({bent.blackDn, bent.rangeDn, bent.coefficients}, dark, out);
     const auto hotPixels = of.dark->hotInRow(at.y);
     out.anyHot = !hotPixels.empty();
     if (!out.anyHot) return;

@@ -54,6 +54,30 @@ std::uint8_t capped(double count) {
     std::fill(block.net.begin() + static_cast<std::ptrdiff_t>(width), block.net.end(), 0.0);
 }
 
+[[gnu::target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")]] void straighten(
+    const Bend& bend, std::span<const float> dark, GroupBlock& block) {
+    BlockOfPixels seen, dim;  // readings of the light and of the dark, in units of the range
+    const double slope = bend.coefficients.front();
+    for (std::size_t x = 0; x < dark.size(); ++x) {
+        const double base = static_cast<double>(dark[x]) - bend.black;
+        dim[x] = base / bend.range;
+        seen[x] = (block.net[x] / std::max(block.count[x], 1.0) + base) / bend.range;
+    }
+    std::fill(seen.begin() + static_cast<std::ptrdiff_t>(dark.size()), seen.end(), 0.0);
+    std::fill(dim.begin() + static_cast<std::ptrdiff_t>(dark.size()), dim.end(), 0.0);
+    for (BlockOfPixels* const of : {&seen, &dim}) {
+        BlockOfPixels sum{}, m;
+        for (std::size_t x = 0; x < kBlock; ++x) m[x] = std::clamp((*of)[x], 0.0, 1.0);
+        for (std::size_t a = bend.coefficients.size(); a > 0; --a) {
+            const double next = bend.coefficients[a - 1];
+            for (std::size_t x = 0; x < kBlock; ++x) sum[x] = (sum[x] + next) * m[x];
+        }
+        for (std::size_t x = 0; x < kBlock; ++x)
+            (*of)[x] = bend.range * (sum[x] + slope * std::min((*of)[x], 0.0));
+    }
+    for (std::size_t x = 0; x < kBlock; ++x) block.net[x] += block.count[x] * (seen[x] - dim[x]);
+}
+
 [[gnu::target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")]] void pool(
     const GroupBlock& group, double tau, MergeBlock& block) {
     for (std::size_t x = 0; x < kBlock; ++x) {

@@ -39,6 +39,15 @@ void unpackTallies(std::span<const std::uint32_t> tallies,
                    std::span<const float> dark,
                    GroupBlock& block);
 
+/// A bent response (Linearity), of which the loops know only the numbers.
+struct Bend {
+    double black = 0, range = 1;           ///< DN
+    std::span<const double> coefficients;  ///< a_1 .. a_d, at least one
+};
+/// The sums as a proportional sensor would have given them: of n samples n times the correction of
+/// their mean, less that of the dark.
+void straighten(const Bend& bend, std::span<const float> dark, GroupBlock& block);
+
 /// What does not depend on the pixel. Variances in electrons^2.
 struct GroupFigures {
     double tau = 0;

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "daemon/rig_records.h"
 #include "proc/formats/graw_exr.h"
 #include "tests/daemon/uniform_capture.h"
 #include "tests/support/temp_folder.h"
@@ -134,6 +135,32 @@ TEST_F(CalibrationsInStore, AZeroReferenceIsTheFourthNumber) {
     }
 }
 
+TEST_F(CalibrationsInStore, WhatElseThereIsFollowsInItsOrder) {
+    for (const std::string kind : {"sensor", "flat", "dark", "leds", "zero"}) keep("R1", kind);
+    const auto newest = newestSet(*store, "R1");
+    ASSERT_TRUE(newest) << newest.error().message;
+    EXPECT_EQ(newest->id(), "1+2+7+12+9+11+8") << "zero, flat, leds, sensor";
+    EXPECT_EQ(parseSet(*store, newest->id(), set)->id(), newest->id());
+    EXPECT_EQ(parseSet(*store, "1+2+7+9", set)->flat->id, 9);
+    expectRefused("1+2+7+9+12", ErrorKind::Usage);  // not in their order
+    expectRefused("10", ErrorKind::Usage);          // dark frames are of the capture
+}
+
+TEST(CalibrationValidity, TilesAreOfTheFiguresOfTheSensorThatTheyWereMergedWith) {
+    RigNow now = kNow;
+    now.profileHash += "/14";
+    CalibrationRecord tile = white();
+    EXPECT_NE(whyNot(tile, now, {}).find("figures of the sensor"), std::string::npos);
+    tile.profileHash += "/14";
+    EXPECT_EQ(whyNot(tile, now, {}), "");
+    EXPECT_NE(whyNotNow(tile), "");
+    tile.kind = "mirror";
+    EXPECT_EQ(whyNotNow(tile), "") << "a lens map does not depend on them";
+    tile.kind = "leds";
+    tile.celsius = -10;
+    EXPECT_EQ(whyNotNow(tile), "") << "warmth is what it is about";
+}
+
 TEST_F(CalibrationsInStore, AStaleZeroReferenceIsLeftOut) {
     keep("R1", "zero");
     auto newest = newestSet(*store, "R1");
@@ -141,10 +168,10 @@ TEST_F(CalibrationsInStore, AStaleZeroReferenceIsLeftOut) {
     newest->zero->dateUtc = "2026-03-01T11:00:00Z";
     newest->zero->profileHash = kNow.profileHash;
     newest->zero->celsius = kNow.celsius;
-    leaveOutStaleZero(*newest, kNow, {});
+    leaveOutStale(*newest, kNow, {});
     EXPECT_TRUE(newest->zero);
     newest->zero->dateUtc = "2026-02-28T11:59:59Z";
-    leaveOutStaleZero(*newest, kNow, {});
+    leaveOutStale(*newest, kNow, {});
     EXPECT_FALSE(newest->zero);
     EXPECT_EQ(newest->id(), "1+2+7");
 }
@@ -157,7 +184,6 @@ TEST_F(CalibrationsInStore, WhatIsNoSetIsRefused) {
                             "1+2+",
                             "+",
                             "1+2+3+7",
-                            "1+2+3+7+8",  // the fifth is not even looked for
                             "1+2",
                             "3+2+1",
                             "1.5",
@@ -193,7 +219,7 @@ TEST(CalibrationReference, IsBinnedAgainWhereAnotherLensMapIsWanted) {
             !wrote) {
             return wrote.error();
         }
-        const auto signals = binned(raw / "r.graw", first);
+        const auto signals = binned(raw / "r.graw", {.lens = first});
         if (!signals) return signals.error();
         const auto bytes = encodeReference({{.name = "white"}, *signals}, {0_deg});
         if (!bytes) return bytes.error();
@@ -202,23 +228,61 @@ TEST(CalibrationReference, IsBinnedAgainWhereAnotherLensMapIsWanted) {
     }();
     ASSERT_TRUE(reference) << reference.error().message;
     const CalibrationRecord secondMirror = keepLens(second);
-    const auto asKept = readReference(*store, *reference, firstMirror, first);
-    const auto again = readReference(*store, *reference, secondMirror, second);
+    const auto asKept = readReference(*store, *reference, *viewOf(firstMirror, {}, {}));
+    const auto again = readReference(*store, *reference, *viewOf(secondMirror, {}, {}));
     ASSERT_TRUE(asKept && again);
     // Radiance per solid angle goes with the square of the picture's scale.
     constexpr std::size_t kCell = 500;
     const double ratio = again->signals[0][0].signal[kCell] / asKept->signals[0][0].signal[kCell];
     EXPECT_NEAR(ratio, (4.4 * 4.4) / (4.0 * 4.0), 0.01);
+    // With a flat field of 2 in all pixels there is half the light; the first lens's signals again.
+    proc::FlatField flat{.response = Image<float>({700, 700}, 2.0F),
+                         .window = {.size = {700, 700}}};
+    const auto record = store->addCalibration({.rig = "R", .kind = "flat", .dateUtc = "t"},
+                                              {.file = *encodeFlat(flat), .raw = {}});
+    ASSERT_TRUE(record);
+    const auto view = viewOf(firstMirror, *record, {});
+    ASSERT_TRUE(view) << view.error().message;
+    EXPECT_EQ(view->id, "1+4");
+    const auto flattened = readReference(*store, *reference, *view);
+    ASSERT_TRUE(flattened) << flattened.error().message;
+    const double kept = asKept->signals[0][0].signal[kCell];
+    EXPECT_NEAR(flattened->signals[0][0].signal[kCell], kept / 2, 1e-4 * kept);
+    EXPECT_FALSE(flattened->signals[0][0].flags[kCell].has(Flag::DriftCorrected));
+}
+
+TEST(Corrections, SignalsAreThoseOfNominalLight) {
+    const auto capture = proc::decodeGraw(test::uniformCapture({0}), "r");
+    ASSERT_TRUE(capture);
+    proc::RawState state = capture->states.front();
+    state.bracket = {{.level = 65535, .frames = 1, .celsius = {27.0, {}, {}, {}}, .milliamp = 350},
+                     {.level = 65535, .frames = 3, .celsius = {29.0, {}, {}, {}}, .milliamp = 350}};
+    Corrections corrections;
+    corrections.leds.emplace();
+    corrections.leds->bands[index(Band::R)] = {.perKelvin = -0.01, .celsius = 27};
+    EXPECT_NEAR(lightOf(*corrections.leds, Band::R, state.bracket), 1 - 0.01 * 1.5, 1e-12);
+    const LensRecord lens = test::evenLens(4);
+    const Window& window = state.merged.window;
+    const proc::Binning binning(lens.fit.map, window, kField);
+    const proc::GlareFilter glare = glareFilterOf(lens, window);
+    const auto plain = signalOf(state, {}, glare, binning);
+    const auto steady = signalOf(state, corrections, glare, binning);
+    constexpr std::size_t kCell = 500;
+    EXPECT_NEAR(steady.signal[kCell], plain.signal[kCell] / 0.985, 1e-9 * plain.signal[kCell]);
+    EXPECT_TRUE(steady.flags[kCell].has(Flag::DriftCorrected));
+    state.bracket.front().celsius[0].reset();
+    EXPECT_NEAR(lightOf(*corrections.leds, Band::R, state.bracket), (1 + 3 * 0.98) / 4, 1e-12);
+    EXPECT_EQ(lightOf(*corrections.leds, Band::R, {}), 1);
 }
 
 TEST(CalibrationReference, RawCaptureThatIsNoneIsNamed) {
-    const auto none = binned("/no/such.graw", test::evenLens(4));
+    const auto none = binned("/no/such.graw", {.lens = test::evenLens(4)});
     ASSERT_FALSE(none);
     EXPECT_NE(none.error().message.find("/no/such.graw"), std::string::npos);
     const test::TempFolder folder;
     ASSERT_TRUE(
         proc::writeGraw(folder / "r.graw", *proc::decodeGraw(test::uniformCapture({64}), "r")));
-    EXPECT_EQ(binned(folder / "r.graw", test::evenLens(4)).error().kind, ErrorKind::File);
+    EXPECT_EQ(binned(folder / "r.graw", {.lens = test::evenLens(4)}).error().kind, ErrorKind::File);
 }
 
 }  // namespace

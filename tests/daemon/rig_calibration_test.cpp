@@ -104,7 +104,7 @@ TEST_F(RigCalibrationInStore, ReferenceSurvivesToFloatPrecision) {
     const auto mirror = newestOf(*store, "R1", "mirror");
     const auto white = newestOf(*store, "R1", "white");
     ASSERT_TRUE(mirror && white);
-    const auto read = readReference(*store, *white, *mirror, lensRecord());
+    const auto read = readReference(*store, *white, *viewOf(*mirror, {}, {}));
     ASSERT_TRUE(read) << read.error().message;
     EXPECT_EQ(read->info.rigSerial, "R1");
     ASSERT_EQ(read->signals.size(), 1U);

@@ -45,7 +45,7 @@ protected:
         const test::TempFolder scratch;
         const auto file = scratch / "c.graw";
         EXPECT_TRUE(proc::writeGraw(file, *proc::decodeGraw(raw(leds, radiance), "c")));
-        auto signals = binned(file, test::evenLens(1.1, 90));
+        auto signals = binned(file, {.lens = test::evenLens(1.1, 90)});
         EXPECT_TRUE(signals) << signals.error().message;
         return signals ? std::move(*signals) : PlacementSignals();
     }
@@ -75,7 +75,7 @@ protected:
         const auto sample =
             calibrateSample(signalsOf(kBothLeds, kGrey),
                             {0_deg, 20_deg},
-                            {loaded->lens, loaded->white, loaded->black, *certified, profile},
+                            {loaded->view.lens, loaded->white, loaded->black, *certified, profile},
                             {.name = "tile", .rigSerial = "R", .calibrationId = calibration});
         const auto bytes = proc::encodeGonio(sample);
         ASSERT_TRUE(bytes) << bytes.error().message;

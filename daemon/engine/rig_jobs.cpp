@@ -1,0 +1,112 @@
+#include "daemon/engine/rig_jobs.h"
+
+#include <nlohmann/json.hpp>
+
+#include "daemon/rig_records.h"
+#include "daemon/rig_sweeps.h"
+#include "daemon/stored_darks.h"
+
+namespace gonio::daemon {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Result<void> expectWhite(const JobRun& run) {
+    const std::string placed = run.bench().port.placed();
+    if (placed.empty() || placed == "white") return {};
+    return Error{
+        ErrorKind::Quality,
+        "under the rig lies '" + placed + "'; place the white first: gonio sim place white"};
+}
+
+/// Keeps it, beside the rig.
+Result<CalibrationRecord> keep(const JobRun& run,
+                               const std::string& kind,
+                               std::optional<double> warmth,
+                               const Result<std::string>& file) {
+    if (!file) return file.error();
+    return run.whileAlive(
+        [&] { return run.keep({.kind = kind, .celsius = warmth}, {.file = *file}); });
+}
+
+Json documentOf(const JobRun& run, const CalibrationRecord& kept) {
+    return {{"schema", "gonio/calibrate-" + kept.kind + "/1"},
+            {"rig", run.serial()},
+            {"rig_seconds", run.onRig().count()},
+            {"file", kept.file.string()}};
+}
+
+}  // namespace
+
+Result<Json> calibrateSensor(const JobRun& run) {
+    if (Result<void> placed = expectWhite(run); !placed) return placed.error();
+    Bench bench = run.measuring();
+    const RigProfile& plain = run.bench().profile;  // not with what is to be found again
+    const Bench onPlain{.rig = bench.rig,
+                        .profile = plain,
+                        .nextPlanStep = bench.nextPlanStep,
+                        .clock = bench.clock,
+                        .step = bench.step,
+                        .alive = bench.alive};
+    run.bench().monitor.begin(sensorSteps());
+    Result<SensorRecord> sensor = measureSensor(onPlain);
+    if (!sensor) return sensor.error();
+    run.bench().monitor.captured();
+    sensor->dateUtc = run.bench().utcNow();
+    const std::optional<double> warmth = run.celsius();
+    const auto kept = run.whileAlive([&] {
+        return run.keep({.kind = "sensor",
+                         .dateUtc = sensor->dateUtc,
+                         .profileHash = plain.hash,
+                         .celsius = warmth},
+                        {.file = encodeSensor(*sensor)});
+    });
+    if (!kept) return kept.error();
+    Json document = documentOf(run, *kept);
+    document["electrons_per_dn"] = sensor->transfer.electronsPerDn;
+    document["u_electrons_per_dn"] = sensor->transfer.uElectronsPerDn;
+    document["read_noise_electrons"] = sensor->transfer.readNoiseElectrons;
+    document["u_read_noise_electrons"] = sensor->transfer.uReadNoiseElectrons;
+    document["inl_percent"] = sensor->linearity.inlPercent;
+    document["left_percent"] =
+        100 * sensor->linearity.largestResidualDn / sensor->linearity.linearity.rangeDn;
+    return document;
+}
+
+Result<Json> calibrateLeds(const JobRun& run) {
+    if (Result<void> placed = expectWhite(run); !placed) return placed.error();
+    run.bench().monitor.begin(warmUpSteps());
+    const Result<proc::LedMonitor> leds = measureWarmUp(run.measuring());
+    if (!leds) return leds.error();
+    run.bench().monitor.captured();
+    const auto kept = keep(run, "leds", run.celsius(), encodeLeds(*leds));
+    if (!kept) return kept.error();
+    Json document = documentOf(run, *kept);
+    for (const Band band : kBands) {
+        const proc::WarmUpFit& fit = leds->bands[index(band)];
+        document["bands"][std::string(letter(band))] = {{"per_kelvin", fit.perKelvin},
+                                                        {"u_per_kelvin", fit.uPerKelvin},
+                                                        {"celsius", fit.celsius}};
+    }
+    return document;
+}
+
+Result<Json> calibrateDark(const JobRun& run) {
+    const Bench bench = run.measuring();
+    run.bench().monitor.begin(storedDarkSteps(bench));
+    const Result<std::vector<proc::DarkFrame>> darks = measureDarks(bench);
+    if (!darks) return darks.error();
+    run.bench().monitor.captured();
+    const std::optional<double> warmth = run.sensorCelsius();
+    const auto kept =
+        keep(run, "dark", warmth, run.whileAlive([&] { return encodeDarks(*darks); }));
+    if (!kept) return kept.error();
+    Json document = documentOf(run, *kept);
+    document["exposures"] = darks->size();
+    document["frames"] = darks->front().frames;
+    document["sensor_celsius"] = warmth ? Json(*warmth) : Json(nullptr);
+    document["hot_pixels"] = darks->back().hot.size();
+    return document;
+}
+
+}  // namespace gonio::daemon

@@ -1,0 +1,89 @@
+#include "daemon/frame_watch.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "proc/optics/cell_grid.h"
+#include "tests/radiance/frames.h"
+
+namespace gonio::daemon {
+namespace {
+
+constexpr Size kSize{64, 64};
+constexpr State kState{1, Band::G};
+constexpr gonio::test::Shot kLit{.electronsPerSecond = 1e6, .seconds = 1e-3},
+    kNoLight{.seconds = 1e-3};
+
+class FrameWatchTest : public testing::Test {
+protected:
+    void SetUp() override {
+        std::vector<Frame> dark;
+        for (int i = 0; i < 8; ++i) dark.push_back(take({.seconds = 1e-3, .level = 0}));
+        auto mean = proc::averageDark(dark, noise);
+        ASSERT_TRUE(mean) << mean.error().message;
+        darks.add(std::move(*mean));
+    }
+    Frame take(const gonio::test::Shot& shot) {
+        Frame frame = gonio::test::take(shot, kSize, random);
+        frame.number = ++number;
+        return frame;
+    }
+    proc::SensorNoise noise;
+    proc::DarkLibrary darks;
+    std::mt19937_64 random{4};
+    std::uint32_t number = 100;
+    /// 3e4 electrons in a frame: 1e-4 of it are 3, and u is 0.04.
+    const WhiteRates white{{3e7, 3e7, 3e7}, {3e7, 3e7, 3e7}};
+};
+
+TEST_F(FrameWatchTest, GoodFramesAreNotOdd) {
+    FrameWatch watch(darks, noise, white);
+    for (int i = 0; i < 5; ++i) watch.see(kState, take(kLit));
+    EXPECT_TRUE(watch.odd().empty());
+    EXPECT_EQ(framesVerdict(watch.odd()).grade, proc::Grade::Ok);
+}
+
+TEST_F(FrameWatchTest, ARepeatedPictureIsRefusedByItsNumber) {
+    FrameWatch watch(darks, noise, white);
+    Frame frame = take(kLit);
+    watch.see(kState, frame);
+    frame.number = 777;
+    frame.index = 1;
+    watch.see(kState, frame);
+    ASSERT_EQ(watch.odd().size(), 1U);
+    const proc::Verdict verdict = framesVerdict(watch.odd());
+    EXPECT_EQ(verdict.grade, proc::Grade::Refused);
+    EXPECT_NE(verdict.evidence.find("777 (LED 1 g)"), std::string::npos) << verdict.evidence;
+    EXPECT_FALSE(verdict.next.empty());
+}
+
+TEST_F(FrameWatchTest, ALitFrameWithoutLightIsWarnedOfWhereWhiteTells) {
+    FrameWatch watch(darks, noise, white);
+    watch.see(kState, take(kNoLight));
+    ASSERT_EQ(watch.odd().size(), 1U);
+    EXPECT_EQ(framesVerdict(watch.odd()).grade, proc::Grade::Warned);
+    FrameWatch without(darks, noise, {});
+    without.see(kState, take(kNoLight));
+    EXPECT_TRUE(without.odd().empty()) << "nothing is known of the light";
+    FrameWatch dim(darks, noise, {{300, 300, 300}, {300, 300, 300}});
+    dim.see(kState, take(kNoLight));
+    EXPECT_TRUE(dim.odd().empty()) << "so little light is lost in the noise";
+}
+
+TEST(WhiteRates, SpreadTheFieldsLightOverTheWindow) {
+    auto signal = proc::CellSignal::missing(proc::CellGrid::count());
+    double sphere = 0;
+    for (std::size_t cell = 0; cell < signal.size(); ++cell) {
+        signal.signal[cell] = 7;
+        signal.variance[cell] = 1;
+        signal.flags[cell] = Flags{Flag::Measured};
+        sphere += proc::CellGrid::solidAngle(cell);
+    }
+    const WhiteRates rates = whiteRates({{signal, signal, signal}}, {.size = {100, 50}});
+    ASSERT_EQ(rates.size(), 1U);
+    EXPECT_NEAR(rates[0][2], 7 * sphere / 5000, 1e-12);
+}
+
+}  // namespace
+}  // namespace gonio::daemon
