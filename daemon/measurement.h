@@ -34,7 +34,7 @@ struct Bench {
     std::function<Result<void>(const std::string&)> step;
     /// It goes on: every few seconds at least, between two steps.
     std::function<void()> alive = [] {};
-    /// How a planned run stands against its plan, after each capture.
+    /// How a planned run stands against its plan, after each state.
     std::function<void(const proc::Progress&)> outlook = [](const proc::Progress&) {};
     /// The lens's glare, which signals are put right by; empty: none is taken off.
     std::optional<proc::GlareSpread> glare{};

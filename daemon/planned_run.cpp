@@ -260,18 +260,19 @@ Result<Captured> PlannedRun::takeStates() {
     };
     std::vector<Frame> again;
     if (Result<void> begun = begin(); !begun) return begun.error();
-    const Result<void> taken =
-        sequencer_.take(shots,
-                        {.frame = [&](std::size_t shot, Frame frame) -> Result<void> {
-                             if (Result<void> on = advanceTo(stateOf[shot]); !on) return on;
-                             if (stateOf[shot] < states_.size()) return gathering.add(frame);
-                             again.push_back(std::move(frame));
-                             return {};
-                         },
-                         .done = [&](std::size_t shot) -> Result<void> {
-                             tellOutlook(shot + 1);
-                             return {};
-                         }});
+    const Result<void> taken = sequencer_.take(
+        shots,
+        {.frame = [&](std::size_t shot, Frame frame) -> Result<void> {
+             if (Result<void> on = advanceTo(stateOf[shot]); !on) return on;
+             if (stateOf[shot] < states_.size()) return gathering.add(frame);
+             again.push_back(std::move(frame));
+             return {};
+         },
+         .done = [&](std::size_t shot) -> Result<void> {
+             const bool last = shot + 1 == shots.size() || stateOf[shot + 1] != stateOf[shot];
+             if (last) tellOutlook(shot + 1);
+             return {};
+         }});
     if (!taken) return taken.error();
     Result<Captured> captured = gathering.finish();
     if (!captured) return captured;

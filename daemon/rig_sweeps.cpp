@@ -12,7 +12,7 @@ namespace gonio::daemon {
 namespace {
 
 constexpr int kExposures = 16, kPair = 2;
-constexpr double kFill = 0.9;  // of the range, at the longest exposure
+constexpr double kFill = 0.85;  // of the range, at the longest exposure
 constexpr int kSide = 128;     // of the even part of the field, pixels
 constexpr Microseconds kFirstLook{80}, kLongest{20'000};
 constexpr double kLeastDn = 40;  // of the first look, above the dark

@@ -21,7 +21,7 @@ struct SensorRecord {
     std::string dateUtc;
 };
 
-/// Pairs of frames at 16 exposures, evenly spread to 90 % of full scale, upwards and downwards: a
+/// Pairs of frames at 16 exposures, evenly spread to 85 % of full scale, upwards and downwards: a
 /// light that drifts steadily cancels. In a part of the field that the white lights evenly. Quality
 /// error where it is too dark for that, and where the figures make no sense.
 [[nodiscard]] Result<SensorRecord> measureSensor(const Bench& bench);

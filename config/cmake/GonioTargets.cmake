@@ -1,6 +1,6 @@
 # gonio_library(NAME SOURCES ... [PUBLIC libs] [PRIVATE libs]): the one target of a folder.
 # gonio_test(NAME LABEL label SOURCES ... LIBS ... [TIMEOUT seconds] [WRAPPER command ...]): a
-# GoogleTest program with one label. A label `run` takes all cores: its tests run alone.
+# GoogleTest program with one label.
 # gonio_program_test(...): likewise, for tests that run the built programs; uses_programs(NAME) tells a
 # test where they are (GONIO_PROGRAM, GONIO_DAEMON).
 
@@ -72,10 +72,6 @@ function(gonio_test name)
     if(NOT TEST_TIMEOUT)
         set(TEST_TIMEOUT 120)
     endif()
-    set(alone FALSE)
-    if(TEST_LABEL STREQUAL run)
-        set(alone TRUE)
-    endif()
     add_executable(${name} ${TEST_SOURCES})
     target_include_directories(${name} PRIVATE ${CMAKE_SOURCE_DIR})
     target_link_libraries(${name} PRIVATE ${TEST_LIBS} GTest::gtest_main gonio_options)
@@ -89,7 +85,7 @@ function(gonio_test name)
         set_target_properties(${name} PROPERTIES CROSSCOMPILING_EMULATOR "${TEST_WRAPPER}")
     endif()
     gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60
-        PROPERTIES LABELS "${TEST_LABEL}" TIMEOUT ${TEST_TIMEOUT} RUN_SERIAL ${alone})
+        PROPERTIES LABELS "${TEST_LABEL}" TIMEOUT ${TEST_TIMEOUT})
 endfunction()
 
 function(uses_programs name)

@@ -47,6 +47,11 @@ Spread spreadOf(std::vector<Counted> values) {
     return {.worst = values.back().value, .percentile95 = quantile(0.95), .median = quantile(0.5)};
 }
 
+void PredictionSum::reserve(std::size_t cells) {
+    for (std::vector<Counted>* const values : {&random_, &systematic_, &total_, &cramerRao_})
+        values->reserve(cells);
+}
+
 void PredictionSum::add(const PlanCell& cell, const StateFrames& taken) {
     const double random = randomUncertainty(cell, taken);
     const double systematic = floor_.at(cell.f) / cell.f;

@@ -30,6 +30,8 @@ struct Counted {
 class PredictionSum {
 public:
     explicit PredictionSum(const SystematicFloor& floor) : floor_(floor) {}
+    /// So many cells will be added.
+    void reserve(std::size_t cells);
     /// A cell that is planned.
     void add(const PlanCell& cell, const StateFrames& taken);
     [[nodiscard]] Prediction result() const;

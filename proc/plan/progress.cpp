@@ -45,6 +45,9 @@ public:
 
     [[nodiscard]] Prediction achieved(const CapturesTaken& taken) const {
         PredictionSum sum(input_.floor);
+        std::size_t cells = 0;
+        for (const StatePilot& state : input_.states) cells += state.cells.size();
+        sum.reserve(cells);
         const double brightest = Means::of(options_, input_.rig.maxFrames).brightest;
         std::size_t left = taken.captures;
         for (std::size_t s = 0; s < plan_.states.size(); ++s) {
