@@ -85,7 +85,12 @@ std::string otherProfile(const CalibrationRecord& calibration, const RigNow& now
     if (baseOf(then) != baseOf(now.profileHash)) {
         return " was taken with rig profile " + then + ", now it is " + now.profileHash;
     }
-    return isTile(calibration) ? " was taken with other figures of the sensor" : "";
+    if (!isTile(calibration)) return {};
+    return now.profileHash.find('/') == std::string::npos
+               ? " was taken with a sensor calibration that is no longer good; run: gonio "
+                 "calibrate "
+                 "sensor"
+               : " was taken with other figures of the sensor";
 }
 
 }  // namespace
@@ -265,6 +270,8 @@ Result<PlacementSignals> binned(const std::filesystem::path& raw, const View& vi
     if (!capture) return capture.error();
     if (capture->states.empty()) return Error{ErrorKind::File, raw.string() + ": no states"};
     const Window& window = capture->states.front().merged.window;
+    if (Result<void> fit = fits(view.corrections, window); !fit)
+        return fit.error().in(raw.string());
     const proc::Binning binning(view.lens.fit.map, window, kField);
     const proc::GlareFilter glare = glareFilterOf(view.lens, window);
     PlacementSignals signals;
@@ -342,12 +349,19 @@ Result<LoadedSet> loadSet(Store& store, const CalibrationSet& set) {
 RigReferences referencesOf(const LoadedSet& loaded,
                            const References& certified,
                            const RigProfile& profile) {
-    return {.lens = loaded.view.lens,
-            .white = loaded.white,
-            .black = loaded.black,
-            .certified = certified,
-            .profile = profile,
-            .zero = loaded.zero ? &*loaded.zero : nullptr};
+    RigReferences references{.lens = loaded.view.lens,
+                             .white = loaded.white,
+                             .black = loaded.black,
+                             .certified = certified,
+                             .profile = profile,
+                             .zero = loaded.zero ? &*loaded.zero : nullptr};
+    if (const auto& leds = loaded.view.corrections.leds) {
+        // They may have been captured anywhere within the kelvin that a tile is good for.
+        const double kelvin = profile.validity.kelvin / std::sqrt(3.0);
+        for (const Band band : kBands)
+            references.uMonitor[index(band)] = leds->bands[index(band)].uPerKelvin * kelvin;
+    }
+    return references;
 }
 
 }  // namespace gonio::daemon

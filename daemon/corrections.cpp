@@ -17,18 +17,24 @@ void divide(proc::CellSignal& signal, double by) {
 
 }  // namespace
 
-double lightOf(const proc::LedMonitor& leds,
-               Band band,
-               std::span<const proc::RawExposure> bracket) {
+Result<void> fits(const Corrections& corrections, const Window& window) {
+    if (!corrections.flat || corrections.flat->window == window) return {};
+    return Error{ErrorKind::Quality,
+                 "the flat field is of another window of the sensor; run: gonio calibrate flat"};
+}
+
+std::optional<double> lightOf(const proc::LedMonitor& leds,
+                              Band band,
+                              std::span<const proc::RawExposure> bracket) {
     double sum = 0, frames = 0;
     for (const proc::RawExposure& exposure : bracket) {
         const std::optional<double>& celsius = exposure.celsius[kLedBoard];
-        const double light =
-            celsius ? leds.light(band, {exposure.level, exposure.milliamp, *celsius}) : 1;
-        sum += light * exposure.frames;
+        if (!celsius || !(exposure.milliamp > 0)) return std::nullopt;
+        sum += exposure.frames * leds.light(band, {exposure.level, exposure.milliamp, *celsius});
         frames += exposure.frames;
     }
-    return frames > 0 ? sum / frames : 1;
+    if (!(frames > 0)) return std::nullopt;
+    return sum / frames;
 }
 
 proc::CellSignal signalOf(const proc::RawState& state,
@@ -38,13 +44,14 @@ proc::CellSignal signalOf(const proc::RawState& state,
     proc::CellSignal signal;
     if (corrections.flat) {
         proc::MergedState even = state.merged;
-        corrections.flat->apply(even);
+        (void)corrections.flat->apply(even);  // fits() was asked before
         signal = glare.bin(even, binning);
     } else {
         signal = glare.bin(state.merged, binning);
     }
-    if (corrections.leds)
-        divide(signal, lightOf(*corrections.leds, state.merged.band, state.bracket));
+    if (!corrections.leds) return signal;
+    if (const auto light = lightOf(*corrections.leds, state.merged.band, state.bracket))
+        divide(signal, *light);
     return signal;
 }
 

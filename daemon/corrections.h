@@ -21,13 +21,17 @@ struct Corrections {
     std::optional<proc::LedMonitor> leds{};
 };
 
-/// Light of a state's bracket over nominal: the mean over its frames. 1 for exposures that tell no
-/// temperature of the LED board.
-[[nodiscard]] double lightOf(const proc::LedMonitor& leds,
-                             Band band,
-                             std::span<const proc::RawExposure> bracket);
+/// Quality error where the flat field is of another window.
+[[nodiscard]] Result<void> fits(const Corrections& corrections, const Window& window);
 
-/// A state's cells. With an LED monitor they are those of nominal light, and DriftCorrected.
+/// Light of a state's bracket over nominal: the mean over its frames. Empty where an exposure does
+/// not tell its temperature of the LED board or its current.
+[[nodiscard]] std::optional<double> lightOf(const proc::LedMonitor& leds,
+                                            Band band,
+                                            std::span<const proc::RawExposure> bracket);
+
+/// A state's cells. With an LED monitor, where its light is told, they are those of nominal light,
+/// and DriftCorrected.
 [[nodiscard]] proc::CellSignal signalOf(const proc::RawState& state,
                                         const Corrections& corrections,
                                         const proc::GlareFilter& glare,

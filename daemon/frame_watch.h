@@ -1,7 +1,7 @@
 #pragma once
 // Whether pictures are what was asked for, though they came whole and with the right numbers
-// (proc/quality/frame_check.h): each frame against the one before, and the first of each capture
-// against the light that it must show.
+// (proc/quality/frame_check.h): each frame of a state against the one before it in that state's
+// sums (its pilots come first), and the first of each capture against the light that it must show.
 
 #include <optional>
 #include <span>

@@ -15,6 +15,7 @@
 #include "proc/core/median.h"
 #include "proc/core/number_text.h"
 #include "proc/optics/spot.h"
+#include "proc/quality/seen_direction.h"
 #include "proc/radiance/merge.h"
 
 namespace gonio::daemon {
@@ -26,6 +27,7 @@ constexpr double kPixelsPerDegree = 6.6;  // where the lens fit starts
 constexpr Radians kUsableSpot = 75.3_deg;
 constexpr int kMirrorFrames = 4;
 constexpr double kWhiteOverBlack = 50;
+constexpr const char* kDraws = "monte_carlo_draws";
 
 Direction lightAt(Radians incidence) { return Direction::fromSpherical(incidence, Radians(0)); }
 
@@ -108,6 +110,7 @@ Result<Captured> capturePlacement(const Bench& bench,
                                   int darkFrames) {
     const Result<Window> window = configureWindow(bench.rig);
     if (!window) return window.error();
+    if (Result<void> fit = fits(bench.corrections, *window); !fit) return fit.error();
     Sequencer sequencer(bench.rig, bench.profile, bench.nextPlanStep, bench.alive);
     Result<proc::DarkLibrary> darks = takeDarks(bench, sequencer, darkFrames);
     if (!darks) return darks.error();
@@ -139,6 +142,7 @@ Result<Captured> capturePlacement(const Bench& bench,
     Result<Captured> captured = gathering.finish();
     if (!captured) return captured;
     captured->compute += prepared;
+    captured->freshDarks = *darks;
     captured->darks = std::move(*darks);
     return captured;
 }
@@ -159,14 +163,19 @@ std::optional<double> achieved(const proc::SampleSet& set) {
     return median(std::move(relative));
 }
 
+/// Standard uncertainty of where an LED's cell lies, per axis.
+using LedAngleUncertainty = std::function<Radians(std::size_t led, const Direction& wo)>;
+
 /// As if it lay flat, with the budgets of its states.
 proc::SampleSet asIfFlat(const PlacementSignals& signals,
                          const std::vector<Radians>& ledAngles,
                          const RigReferences& references,
-                         const proc::AngleUncertainty& uAngle) {
+                         const LedAngleUncertainty& uAngle,
+                         const proc::MonteCarlo& monteCarlo) {
     const int spots = references.lens.spots;
-    const proc::RigUncertainty rig{
-        .angle = uAngle,
+    proc::AngleUncertainty ofLed;
+    proc::RigUncertainty rig{
+        .angle = ofLed,
         .ledDrift = references.profile.ledDrift,
         .exposureRatio = references.profile.exposureRatio,
         .linearity = references.profile.linearity,
@@ -175,14 +184,17 @@ proc::SampleSet asIfFlat(const PlacementSignals& signals,
     Json budgets = Json::array();
     for (std::size_t led = 0; led < signals.size(); ++led) {
         proc::LedTable table{.incidence = ledAngles[led], .bands = {}};
+        ofLed = [&](const Direction& wo) { return uAngle(led, wo); };
         for (Band band : kBands) {
             const std::size_t b = index(band);
+            rig.ledDrift = std::hypot(references.profile.ledDrift, references.uMonitor[b]);
             proc::Calibrated calibrated =
                 proc::calibrate(signals[led][b],
                                 referencesOf(references, {static_cast<int>(led), band}),
                                 lightAt(ledAngles[led]),
                                 band,
-                                rig);
+                                rig,
+                                monteCarlo);
             budgets.push_back({{"led", led},
                                {"band", std::string(letter(band))},
                                {"monte_carlo_cells", calibrated.propagated},
@@ -275,17 +287,38 @@ proc::References referencesOf(const RigReferences& references, State state) {
 proc::SampleSet calibrateSample(const PlacementSignals& signals,
                                 const std::vector<Radians>& ledAngles,
                                 const RigReferences& references,
-                                proc::SampleInfo info) {
+                                proc::SampleInfo info,
+                                const proc::MonteCarlo& monteCarlo) {
     constexpr Radians kTypicalView = 40_deg;
-    const proc::AngleUncertainty uAngle = proc::DirectionUncertainty(references.lens.fit);
-    proc::SampleSet set = asIfFlat(signals, ledAngles, references, uAngle);
+    const proc::LensFit& lens = references.lens.fit;
+    const proc::DirectionUncertainty uAngle(lens);
+    const auto ofMap = [&](std::size_t, const Direction& wo) { return uAngle(wo); };
+    proc::SampleSet set = asIfFlat(signals, ledAngles, references, ofMap, monteCarlo);
+    const Radians uLens = uAngle(Direction::fromSpherical(kTypicalView, Radians(0)));
+    const std::optional<proc::TiltEstimate> tilt = proc::estimateTilt(set, uLens);
+    if (worthCorrecting(tilt)) {
+        const proc::SeenDirection seen(lens, ledAngles, *tilt);
+        const auto ofLobes = [&](std::size_t led, const Direction& wo) {
+            return seen.uncertainty(led, wo);
+        };
+        set = asIfFlat(signals, ledAngles, references, ofLobes, monteCarlo);
+    }
     info.budgetJson = std::move(set.info.budgetJson);
     noteBlackCheck(checkBlack(references, ledAngles), info);
     set.info = std::move(info);
-    const Radians uLens = uAngle(Direction::fromSpherical(kTypicalView, Radians(0)));
-    proc::SampleSet flat = referredToItsNormal(std::move(set), uLens);
+    proc::SampleSet flat = referredToItsNormal(std::move(set), tilt);
     flat.info.achievedUncertainty = achieved(flat);
     return flat;
+}
+
+void noteDraws(int draws, proc::SampleInfo& info) { info.extra[kDraws] = std::to_string(draws); }
+
+proc::MonteCarlo drawsOf(const proc::SampleInfo& info) {
+    const auto said = info.extra.find(kDraws);
+    if (said == info.extra.end()) return {};
+    const auto draws = parseInteger(said->second);
+    return {.draws =
+                draws && *draws > 0 && std::in_range<int>(*draws) ? static_cast<int>(*draws) : 0};
 }
 
 }  // namespace gonio::daemon

@@ -4,6 +4,7 @@
 // merged and binned state by state beside the captures of the next. The result is that of merging
 // one after the other. However a measurement ends, the LEDs are dark and no thread is left.
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -69,7 +70,8 @@ struct Captured {
     std::vector<OddFrame> oddFrames;    ///< as they came
     double chiSquarePerFreedom = 0;     ///< of all merges; 1 where noise alone differs
     Seconds compute{0};            ///< of merging and binning, though the rig went on meanwhile
-    proc::DarkLibrary darks;       ///< taken over the sample
+    proc::DarkLibrary darks;       ///< that were subtracted
+    proc::DarkLibrary freshDarks;  ///< taken over the sample: light that leaks in is in these
     std::optional<Repeat> repeat;  ///< empty where none was taken
 };
 [[nodiscard]] Result<Captured> measurePlacement(const Bench& bench,
@@ -91,13 +93,22 @@ struct RigReferences {
     const References& certified;
     const RigProfile& profile;
     const ReferenceRecord* zero = nullptr;  ///< null: there is none, and black stands for it
+    /// What the LED monitor leaves of the light unknown between two captures, relative, by band.
+    std::array<double, 3> uMonitor{};
 };
 /// What a state is held against: white, and zero or black.
 [[nodiscard]] proc::References referencesOf(const RigReferences& references, State state);
-/// With the tilt of the sample found, and corrected where that is sound (sample_pose.h).
+/// With the tilt of the sample found, and corrected where that is sound (sample_pose.h); cells then
+/// are known against the lobes (proc/quality/seen_direction.h), not against the lens map alone.
 [[nodiscard]] proc::SampleSet calibrateSample(const PlacementSignals& signals,
                                               const std::vector<Radians>& ledAngles,
                                               const RigReferences& references,
-                                              proc::SampleInfo info);
+                                              proc::SampleInfo info,
+                                              const proc::MonteCarlo& monteCarlo = {});
+
+/// A sample says how many draws its uncertainties were asked to be made of, so that it can be
+/// worked out again alike.
+void noteDraws(int draws, proc::SampleInfo& info);
+[[nodiscard]] proc::MonteCarlo drawsOf(const proc::SampleInfo& info);
 
 }  // namespace gonio::daemon

@@ -93,6 +93,7 @@ bool PlannedRun::holdsDarks(const Window& window) const {
 Result<const proc::Plan*> PlannedRun::plan() {
     const Result<Window> window = configureWindow(bench_.rig);
     if (!window) return window.error();
+    if (Result<void> fit = fits(bench_.corrections, *window); !fit) return fit.error();
     if (holdsDarks(*window)) rig_.darkFramesHeld = bench_.darks.front().frames;
     seeing_.emplace([this, window = *window]() -> Result<void> {
         const proc::LensMap& map = references_.lens.fit.map;
@@ -211,8 +212,12 @@ Result<void> PlannedRun::takeDarks() {
     for (const auto& [exposure, sums] : darkSums_) {
         Result<proc::DarkFrame> dark = sums.mean();
         if (!dark) return dark.error();
+        freshDarks_.add(*dark);
         const auto same = held.find(exposure);
-        darks_.add(same != held.end() ? proc::pooled(*same->second, *dark) : std::move(*dark));
+        const bool alike = same != held.end() && same->second->window == dark->window &&
+                           same->second->gainDb == dark->gainDb &&
+                           same->second->exposure.granted == dark->exposure.granted;
+        darks_.add(alike ? proc::pooled(*same->second, *dark) : std::move(*dark));
     }
     darkSums_.clear();
     return {};
@@ -282,6 +287,7 @@ Result<Captured> PlannedRun::takeStates() {
     captured->repeat = std::move(*repeat);
     captured->compute += compute_ + comparing.elapsed();
     captured->darks = std::move(darks_);
+    captured->freshDarks = std::move(freshDarks_);
     if (Result<void> on = bench_.step(stateName(states_.front()) + " again"); !on)
         return on.error();
     return captured;

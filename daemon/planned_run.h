@@ -61,7 +61,7 @@ private:
     std::vector<proc::StatePilot> learnt_;    ///< what they say
     std::map<Microseconds, proc::DarkAverage> darkSums_;
     std::map<Microseconds, int> darksTaken_;
-    proc::DarkLibrary darks_;
+    proc::DarkLibrary darks_, freshDarks_;
     std::optional<proc::Binning> binning_;
     std::optional<proc::GlareFilter> glare_;
     std::optional<proc::Plan> plan_;

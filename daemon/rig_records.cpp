@@ -1,7 +1,11 @@
 #include "daemon/rig_records.h"
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "proc/core/bands.h"
 #include "proc/formats/exr_parts.h"
@@ -43,11 +47,32 @@ Json toJson(const Window& window) {
     return {window.x, window.y, window.size.width, window.size.height, window.binning};
 }
 
+/// The library would turn 2^32 into 0.
+int wholeFrom(const Json& json) {
+    const auto value = json.get<std::int64_t>();
+    if (!json.is_number_integer() || !std::in_range<int>(value))
+        throw std::runtime_error("a number that is out of its range");
+    return static_cast<int>(value);
+}
+
+double finiteFrom(const Json& json) {
+    const auto value = json.get<double>();
+    if (!std::isfinite(value)) throw std::runtime_error("a number that is not finite");
+    return value;
+}
+
 Window windowFrom(const Json& json) {
-    return {.x = json.at(0),
-            .y = json.at(1),
-            .size = {json.at(2).get<int>(), json.at(3).get<int>()},
-            .binning = json.at(4)};
+    const Window window{.x = wholeFrom(json.at(0)),
+                        .y = wholeFrom(json.at(1)),
+                        .size = {wholeFrom(json.at(2)), wholeFrom(json.at(3))},
+                        .binning = wholeFrom(json.at(4))};
+    if (window.binning < 1 || window.size.width < 1 || window.size.height < 1)
+        throw std::runtime_error("a window without pixels");
+    return window;
+}
+
+bool allFinite(const std::vector<float>& values) {
+    return std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); });
 }
 
 /// A part's text and its one picture, whose window is the text's.
@@ -60,6 +85,7 @@ Json aboutOf(const proc::ExrPart& part, const char* schema, const char* picture)
     if (windowFrom(about.at("window")).sent() != part.size) {
         throw std::runtime_error("its picture is not of its window");
     }
+    if (!allFinite(part.floats.at(picture))) throw std::runtime_error("pixels without a value");
     return about;
 }
 
@@ -98,16 +124,17 @@ proc::DarkFrame darkFrom(proc::ExrPart&& part) {
     const Json about = aboutOf(part, kDarksSchema, "mean");
     proc::DarkFrame dark{
         .mean = Image<float>(part.size, std::move(part.floats["mean"])),
-        .varianceOfMean = about.at("variance_of_mean"),
+        .varianceOfMean = finiteFrom(about.at("variance_of_mean")),
         .hot = {},
         .exposure = {.requested = Microseconds(about.at("requested_us").get<std::int64_t>()),
                      .granted = Nanoseconds(about.at("granted_ns").get<std::int64_t>())},
         .window = windowFrom(about.at("window")),
         .gainDb = about.at("gain_db"),
-        .frames = about.at("frames")};
+        .frames = wholeFrom(about.at("frames"))};
     if (dark.frames < 1 || !(dark.varianceOfMean >= 0)) throw std::runtime_error("no dark frames");
     for (const Json& pixel : about.at("hot")) {
-        const proc::HotPixel hot{pixel.at(0), pixel.at(1), pixel.at(2)};
+        const proc::HotPixel hot{
+            wholeFrom(pixel.at(0)), wholeFrom(pixel.at(1)), finiteFrom(pixel.at(2))};
         const bool inside =
             hot.x >= 0 && hot.y >= 0 && hot.x < dark.mean.width() && hot.y < dark.mean.height();
         if (!inside) throw std::runtime_error("a hot pixel outside of the picture");
@@ -173,7 +200,10 @@ Result<proc::LedMonitor> decodeLeds(std::string_view text, const std::string& na
                                        .celsius = fit.at("celsius"),
                                        .chiSquare = fit.at("chi_square"),
                                        .freedom = fit.at("freedom")};
-            leds.fullMilliamp[index(band)] = fit.at("full_milliamp");
+            leds.fullMilliamp[index(band)] = finiteFrom(fit.at("full_milliamp"));
+            constexpr double kSteepest = 0.05;  // per kelvin: no LED loses more
+            if (!(std::abs(leds.bands[index(band)].perKelvin) < kSteepest))
+                throw std::runtime_error("light that changes by more than 5 % per kelvin");
         }
         return leds;
     });
@@ -241,7 +271,16 @@ Result<std::vector<proc::DarkFrame>> decodeDarks(std::string_view bytes, const s
     if (!parts) return parts.error().in(name);
     return understood(name, "dark", [&] {
         std::vector<proc::DarkFrame> darks;
-        for (proc::ExrPart& part : *parts) darks.push_back(darkFrom(std::move(part)));
+        std::set<Microseconds> exposures;
+        for (proc::ExrPart& part : *parts) {
+            darks.push_back(darkFrom(std::move(part)));
+            const proc::DarkFrame& dark = darks.back();
+            if (dark.window != darks.front().window || dark.gainDb != darks.front().gainDb ||
+                dark.frames != darks.front().frames)
+                throw std::runtime_error("exposures that were not taken alike");
+            if (!exposures.insert(dark.exposure.requested).second)
+                throw std::runtime_error("an exposure that is there twice");
+        }
         return darks;
     });
 }

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kExposures = 16, kPair = 2;
 constexpr double kFill = 0.85;  // of the range, at the longest exposure
-constexpr int kSide = 128;     // of the even part of the field, pixels
+constexpr int kSide = 128;      // of the even part of the field, pixels
 constexpr Microseconds kFirstLook{80}, kLongest{20'000};
 constexpr double kLeastDn = 40;  // of the first look, above the dark
 constexpr std::size_t kLedBoard = 0, kSensor = 1;
@@ -166,13 +166,17 @@ Result<std::vector<proc::WarmUpPoint>> warmUp(const Bench& bench,
     const Result<void> taken =
         sequencer.take(shots,
                        {.frame = [&](std::size_t shot, const Frame& frame) -> Result<void> {
-                            if (!shots[shot].state || shots[shot].shot.exposure != look) return {};
-                            const auto point = pointOf(frame, state.band, bench.profile.noise);
+                            if (cycleOf[shot] == kNone) return {};
+                            auto point = pointOf(frame, state.band, bench.profile.noise);
                             if (!point) return point.error();
+                            point->cycle = cycleOf[shot];
                             points.push_back(*point);
                             return {};
                         },
-                        .done = [&](std::size_t) { return Result<void>(); }});
+                        .done =
+                            [&](std::size_t) {
+                                return bench.step("warm-up in " + std::string(letter(state.band)));
+                            }});
     if (!taken) return taken.error();
     return points;
 }
@@ -194,8 +198,6 @@ Result<proc::LedMonitor> takeWarmUp(const Bench& bench) {
         const auto fit = proc::fitWarmUp(*points);
         if (!fit) return fit.error().in("band " + std::string(letter(band)));
         monitor.bands[index(band)] = *fit;
-        if (Result<void> on = bench.step("warm-up in " + std::string(letter(band))); !on)
-            return on.error();
     }
     return monitor;
 }
@@ -203,7 +205,7 @@ Result<proc::LedMonitor> takeWarmUp(const Bench& bench) {
 }  // namespace
 
 int sensorSteps() { return 3 * kExposures; }
-int warmUpSteps() { return static_cast<int>(kBands.size()); }
+int warmUpSteps() { return static_cast<int>(kBands.size()) * kCycles * (2 + 2 * kWarmSteps); }
 
 Result<SensorRecord> measureSensor(const Bench& bench) {
     return thenDark(bench.rig, takeSensor(bench));

@@ -5,7 +5,6 @@
 
 #include "proc/core/median.h"
 #include "proc/core/number_text.h"
-#include "proc/quality/tilt.h"
 #include "proc/quality/tilt_correction.h"
 #include "proc/quality/verdict.h"
 
@@ -88,11 +87,6 @@ void putBoth(proc::SampleInfo& info, proc::Verdict tilt, proc::Verdict waviness)
     info.qcVerdicts = proc::verdictsText(verdicts);
 }
 
-bool worthCorrecting(const proc::TiltEstimate& estimate, const PoseLimits& limits) {
-    const Radians tilt = estimate.joint.tilt();
-    return tilt > limits.corrected && tilt > estimate.joint.u * 3;
-}
-
 /// Median over the cells of what the tilt has added to u_systematic, relative.
 double medianAdded(const proc::CellSamples& before, const proc::CellSamples& after) {
     std::vector<double> relative;
@@ -126,10 +120,23 @@ std::string withTilt(const std::string& budgetJson,
 
 }  // namespace
 
+bool worthCorrecting(const std::optional<proc::TiltEstimate>& estimate, const PoseLimits& limits) {
+    if (!estimate || !estimate->determined) return false;
+    if (estimate->lobes.front().alpha > limits.matt) return false;
+    const Radians tilt = estimate->joint.tilt();
+    return tilt > limits.corrected && tilt > estimate->joint.u * 3;
+}
+
 proc::SampleSet referredToItsNormal(proc::SampleSet sample,
                                     Radians uAngle,
                                     const PoseLimits& limits) {
     const std::optional<proc::TiltEstimate> estimate = proc::estimateTilt(sample, uAngle);
+    return referredToItsNormal(std::move(sample), estimate, limits);
+}
+
+proc::SampleSet referredToItsNormal(proc::SampleSet sample,
+                                    const std::optional<proc::TiltEstimate>& estimate,
+                                    const PoseLimits& limits) {
     if (!estimate || estimate->lobes.front().alpha > limits.matt) {
         putBoth(sample.info, withoutLobe("tilt"), withoutLobe("waviness"));
         return sample;
@@ -140,7 +147,7 @@ proc::SampleSet referredToItsNormal(proc::SampleSet sample,
         widened.info.budgetJson = withTilt(sample.info.budgetJson, sample, widened);
         return widened;
     }
-    const bool corrected = worthCorrecting(*estimate, limits);
+    const bool corrected = worthCorrecting(estimate, limits);
     proc::SampleSet flat = corrected ? proc::tiltCorrected(sample, *estimate)
                                      : proc::withTiltUncertainty(sample, *estimate);
     putBoth(

@@ -4,6 +4,9 @@
 // tell its tilt, what samples are seated to does. The verdicts `tilt` and `waviness` stand in the
 // sample's information (proc/quality/verdict.h).
 
+#include <optional>
+
+#include "proc/quality/tilt.h"
 #include "proc/table/sample_set.h"
 
 namespace gonio::daemon {
@@ -16,7 +19,15 @@ struct PoseLimits {
     double matt = 0.5;  ///< alpha: a wider lobe shows its tilt badly, and hardly suffers from it
 };
 
-/// `uAngle`: standard uncertainty of the lens map's directions, per axis.
+/// Whether its tilt is sure, and does harm.
+[[nodiscard]] bool worthCorrecting(const std::optional<proc::TiltEstimate>& estimate,
+                                   const PoseLimits& limits = {});
+
+/// `estimate` is of this sample; empty: none.
+[[nodiscard]] proc::SampleSet referredToItsNormal(proc::SampleSet sample,
+                                                  const std::optional<proc::TiltEstimate>& estimate,
+                                                  const PoseLimits& limits = {});
+/// Estimates first; `uAngle`: standard uncertainty of the lens map's directions, per axis.
 [[nodiscard]] proc::SampleSet referredToItsNormal(proc::SampleSet sample,
                                                   Radians uAngle,
                                                   const PoseLimits& limits = {});

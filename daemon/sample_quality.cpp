@@ -52,7 +52,7 @@ std::optional<double> dimmestFieldSignal(const proc::SampleSet& sample,
 proc::Verdict ambientOf(const proc::SampleSet& sample,
                         const Captured& captured,
                         const RigReferences& references) {
-    const proc::DarkFrame* dark = captured.darks.longest();
+    const proc::DarkFrame* dark = captured.freshDarks.longest();
     if (dark == nullptr) return proc::ambientVerdict({}, {});
     return proc::ambientVerdict(
         proc::ambientLight(*dark, references.lens.fit.map, kField, references.profile.noise),

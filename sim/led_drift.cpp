@@ -16,26 +16,15 @@ constexpr std::uint64_t kStepsPerNode = 64;
 
 void LedDrift::run(const Settings& settings, Nanoseconds time) {
     const double seconds = static_cast<double>(time.count()) * 1e-9;
-    const double left = std::exp(-seconds / kWarmUpSeconds);
-    for (int led = 0; led < kLeds; ++led) {
-        LedBands& heat = heat_[static_cast<std::size_t>(led)];
-        for (Band b : kBands) {
-            const double level = led == settings.led ? settings.levels[index(b)] / kFullLevel : 0;
-            heat[b] = level + (heat[b] - level) * left;
-        }
-    }
-}
-
-double LedDrift::heat(int led, Band band) const {
-    return heat_[static_cast<std::size_t>(led)][band];
+    double level = 0;
+    if (settings.led >= 0)
+        for (const Band b : kBands) level += settings.levels[index(b)] / kFullLevel;
+    heat_ = level + (heat_ - level) * std::exp(-seconds / kWarmUpSeconds);
 }
 
 double LedDrift::boardKelvin() const {
     constexpr double kKelvin = 3;
-    double sum = 0;
-    for (const LedBands& led : heat_)
-        for (const Band band : kBands) sum += led[band];
-    return kKelvin * sum;
+    return kKelvin * heat_;
 }
 
 double LedDrift::wander(int led, Band band, std::uint64_t planStep) const {
@@ -51,7 +40,7 @@ double LedDrift::wander(int led, Band band, std::uint64_t planStep) const {
 LedBands LedDrift::output(int led, std::uint64_t planStep) const {
     LedBands output;
     for (Band b : kBands) {
-        output[b] = 1 + size_ * (wander(led, b, planStep) - kHeatLoss[index(b)] * heat(led, b));
+        output[b] = 1 + size_ * (wander(led, b, planStep) - kHeatLoss[index(b)] * heat_);
     }
     return planStep < step_.planStep ? output : output * (1 + step_.size);
 }

@@ -2,24 +2,24 @@
 // How the light of the LEDs departs from nominal although their current is constant. Of an LED and
 // band, relative to nominal,
 //     output = 1 + s (z - d h),   s: the size, a relative standard deviation.
-// h is the heat of its own light: h' = (level - h) / 2 s, 0 when cold, the drive level when warm. d
-// says what heat costs: 2 in red (AlInGaP loses 0.5 to 1 % per kelvin), 0.5 in green and blue
-// (InGaN, 0.1 to 0.3 %). z wanders: drawn from the seed, a standard normal at any plan step,
-// changing by about a tenth over a bracket and independent after 128 steps. Plan steps never come
-// again, so that no two placements share their z, however often the rig was switched on between.
-// Size 0: the output is 1 exactly.
+// h is the heat of the board that all LEDs sit on: h' = (level - h) / 2 s, level the sum of the
+// drive levels, 0 when cold, 1 when one LED's band is at full level for long. d says what heat
+// costs: 2 in red (AlInGaP loses 0.5 to 1 % per kelvin), 0.5 in green and blue (InGaN, 0.1 to 0.3
+// %). z wanders: drawn from the seed, a standard normal at any plan step, changing by about a tenth
+// over a bracket and independent after 128 steps. Plan steps never come again, so that no two
+// placements share their z, however often the rig was switched on between. Size 0: the output is 1
+// exactly.
 //
 // Heat comes and goes with the photometric clock, which exposures and settling advance and nothing
-// else: never the wall clock, so that frames do not depend on how fast the host is. An LED cools
-// while others are lit and in dark frames; a pause between captures cools nothing.
+// else: never the wall clock, so that frames do not depend on how fast the host is. The board cools
+// in dark frames; a pause between captures cools nothing.
 //
 // From a plan step on, all LEDs may give another share of their light at once: a step multiplies
 // the output by 1 + its size.
 //
-// The LED board is warmer than its surroundings by 3 K for each LED and band at full heat, which
-// its sensor shows; the drive current that the rig measures shows none of it.
+// The board is warmer than its surroundings by 3 K times h, which its sensor shows; the drive
+// current that the rig measures shows none of it.
 
-#include <array>
 #include <cstdint>
 
 #include "proc/core/bands.h"
@@ -40,8 +40,9 @@ public:
     /// Of the bands of an LED as warm as it is now, in a capture of this plan step.
     [[nodiscard]] LedBands output(int led, std::uint64_t planStep) const;
 
-    [[nodiscard]] double heat(int led, Band band) const;
-    /// Of the LED board, over that of a dark one.
+    /// h.
+    [[nodiscard]] double heat() const { return heat_; }
+    /// Of the board, over that of a dark one.
     [[nodiscard]] double boardKelvin() const;
     [[nodiscard]] double wander(int led, Band band, std::uint64_t planStep) const;
 
@@ -49,7 +50,7 @@ private:
     std::uint64_t seed_;
     double size_;
     LedStep step_;
-    std::array<LedBands, kLeds> heat_{};
+    double heat_ = 0;
 };
 
 }  // namespace gonio::sim

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -274,11 +275,16 @@ Result<ApiReply> postJob(const Call& call) {
                    .calibration = fields.text("calibration"),
                    .against = fields.text("against")};
     job.limit = fields.number("limit").value_or(job.limit);
+    const double draws = fields.number("monte_carlo").value_or(0);
     const std::optional<double> target = fields.number("target_uncertainty");
     const std::optional<double> budget = fields.number("time_budget_s");
     if (Result<void> good = fields.verdict(); !good) return good.error();
     if (!kind) return kind.error();
     job.kind = *kind;
+    if (draws != std::floor(draws) || std::abs(draws) > 1e9) {
+        return Error{ErrorKind::Usage, "monte_carlo: wanted a whole number"};
+    }
+    job.monteCarlo = static_cast<int>(draws);
     if (effortName) {
         const Result<Effort> effort = parseEffort(*effortName);
         if (!effort) return effort.error();

@@ -58,6 +58,7 @@ struct MeasureOptions {
     bool force = false;   ///< with calibrations that are no longer good and refused verdicts, too
     std::string backing;  ///< black or white; empty: not said
     std::string against;  ///< the same sample on the other backing; empty: none
+    int monteCarlo = 0;   ///< draws per cell; 0: where first order is wrong
     std::filesystem::path output;  ///< a copy of the .gonio; empty: the store only
 };
 Result<void> measure(const CommonOptions& common, const MeasureOptions& options);
@@ -68,6 +69,7 @@ Result<void> plan(const CommonOptions& common, const CaptureGoal& goal);
 struct RecalibrateOptions {
     std::string name;
     std::string calibration;       ///< 10+11+12, or one number; empty: the newest
+    int monteCarlo = 0;            ///< draws per cell; 0: as it was measured
     std::filesystem::path output;  ///< a copy of the .gonio; empty: the store only
 };
 Result<void> recalibrate(const CommonOptions& common, const RecalibrateOptions& options);

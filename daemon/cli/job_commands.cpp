@@ -193,7 +193,8 @@ Result<void> measure(const CommonOptions& common, const MeasureOptions& options)
                  {"notes", options.notes},
                  {"force", options.force},
                  {"backing", options.backing.empty() ? Json() : Json(options.backing)},
-                 {"against", options.against}};
+                 {"against", options.against},
+                 {"monte_carlo", options.monteCarlo}};
     request.update(toJson(options.goal));
     const auto done = FollowedJob(common, client, options.name)
                           .run(request.dump(-1, ' ', false, Json::error_handler_t::replace));
@@ -213,8 +214,10 @@ Result<void> plan(const CommonOptions& common, const CaptureGoal& goal) {
 
 Result<void> recalibrate(const CommonOptions& common, const RecalibrateOptions& options) {
     const DaemonClient client(common.socketPath());
-    const Json request{
-        {"kind", "recalibrate"}, {"name", options.name}, {"calibration", options.calibration}};
+    const Json request{{"kind", "recalibrate"},
+                       {"name", options.name},
+                       {"calibration", options.calibration},
+                       {"monte_carlo", options.monteCarlo}};
     const auto done = FollowedJob(common, client, options.name).run(request.dump());
     if (!done) return done.error();
     if (Result<void> copied = copy(client, options.name, options.output); !copied) return copied;

@@ -177,6 +177,10 @@ void Program::addMeasuring() {
     sub->add_option("--against",
                     measure.against,
                     "the same sample, measured on the other backing: tells translucency");
+    sub->add_option(
+        "--monte-carlo",
+        measure.monteCarlo,
+        "draws for the uncertainty of each cell; unless said, only where first order is wrong");
     sub->add_option("-o,--output", measure.output, "also write the .gonio here");
 
     sub = command(app,
@@ -196,6 +200,9 @@ void Program::addMeasuring() {
     sub->add_option("--calibration",
                     recalibrate.calibration,
                     "10+11+12, or one number in the place of its kind; default: the newest");
+    sub->add_option("--monte-carlo",
+                    recalibrate.monteCarlo,
+                    "draws for the uncertainty of each cell; unless said, as it was measured");
     sub->add_option("-o,--output", recalibrate.output, "also write the .gonio here");
 }
 

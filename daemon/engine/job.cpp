@@ -19,6 +19,7 @@ constexpr std::array<std::string_view, 12> kKinds{"calibrate-mirror",
                                                   "plan",
                                                   "recalibrate"};
 constexpr std::size_t kLongestNotes = 4096;
+constexpr int kFewestDraws = 100, kMostDraws = 100'000;
 
 Result<void> checkBacking(const JobRequest& request) {
     if (!request.backing && request.against.empty()) return {};
@@ -57,6 +58,13 @@ Result<void> check(const JobRequest& request) {
     if (Result<void> good = checkBacking(request); !good) return good;
     if (request.notes.size() > kLongestNotes) {
         return Error{ErrorKind::Usage, "notes: more than 4096 bytes"};
+    }
+    if (request.monteCarlo != 0 && !ofSample) {
+        return Error{ErrorKind::Usage, "monte-carlo: only measure and recalibrate have it"};
+    }
+    if (request.monteCarlo != 0 &&
+        (request.monteCarlo < kFewestDraws || request.monteCarlo > kMostDraws)) {
+        return Error{ErrorKind::Usage, "monte-carlo: wanted 100 to 100000 draws for each cell"};
     }
     if (Result<void> good = request.goal.check(); !good) return good;
     if (request.kind == JobKind::VerifyWhite && !(request.limit > 0 && request.limit <= 1)) {

@@ -47,6 +47,7 @@ struct JobRequest {
     std::string calibration;  ///< recalibrate: which (calibrations.h); empty: the newest
     std::optional<proc::Backing>
         backing{};          ///< measure: what lies under the sample; empty: not said
+    int monteCarlo = 0;     ///< measure, recalibrate: draws per cell; 0: where first order is wrong
     std::string against{};  ///< measure: the same sample on the other backing; empty: none
 };
 /// Usage error for what no rig can do.

@@ -45,6 +45,14 @@ void JobRun::finish(proc::SampleInfo& info, const Captured& captured) const {
     info.extra["light"] = steps.empty() ? "steady within each bracket" : steps;
 }
 
+Result<void> JobRun::expectPlaced(const std::string& reference) const {
+    const std::string placed = bench_.port.placed();
+    if (placed.empty() || placed == reference) return {};
+    return Error{ErrorKind::Quality,
+                 "under the rig lies '" + placed + "'; place the " + reference +
+                     " first: gonio sim place " + reference};
+}
+
 std::optional<double> JobRun::celsius() const {
     const auto& status = bench_.rig.link().status();
     return status ? driver::celsius(status->temperature[0]) : std::nullopt;

@@ -40,6 +40,8 @@ public:
     /// And of how it was captured.
     void finish(proc::SampleInfo& info, const Captured& captured) const;
 
+    /// Quality error unless this reference lies there, as far as the rig's door tells.
+    [[nodiscard]] Result<void> expectPlaced(const std::string& reference) const;
     /// What the rig knows of itself now.
     [[nodiscard]] RigNow now() const;
     /// Of the LED board, and of the sensor; empty: the rig does not tell.

@@ -7,6 +7,7 @@
 #include "daemon/measurement.h"
 #include "daemon/references.h"
 #include "daemon/sample_quality.h"
+#include "proc/core/number_text.h"
 #include "proc/formats/file_bytes.h"
 #include "proc/formats/gonio_exr.h"
 
@@ -26,15 +27,58 @@ Result<CalibrationSet> measuredWith(Store& store,
     return own.error().in("what the sample was measured with");
 }
 
+/// The sensor calibration that the sample's frames were merged with, by its profile's hash
+/// (withSensor); empty: none.
+Result<std::optional<CalibrationRecord>> sensorOf(Store& store, const proc::SampleInfo& info) {
+    const std::size_t slash = info.profileHash.find('/');
+    if (slash == std::string::npos) return std::optional<CalibrationRecord>();
+    const auto id = parseInteger(std::string_view(info.profileHash).substr(slash + 1));
+    auto found = id ? store.calibration(*id) : std::optional<CalibrationRecord>();
+    if (!found) return found.error();
+    if (*found) return std::move(*found);
+    return Error{ErrorKind::Quality,
+                 "sample '" + info.name + "': its sensor calibration " +
+                     info.profileHash.substr(slash + 1) + " is not in the store"};
+}
+
+/// The sensor is the sample's own: its figures are in the merged pictures.
 Result<CalibrationSet> wantedSet(Store& store,
                                  const proc::SampleInfo& info,
                                  const std::string& calibration) {
-    const Result<CalibrationSet> newest = newestSet(store, info.rigSerial);
-    if (!newest || calibration.empty()) return newest;
+    Result<CalibrationSet> newest = newestSet(store, info.rigSerial);
+    if (!newest) return newest;
+    auto sensor = sensorOf(store, info);
+    if (!sensor) return sensor.error();
+    newest->sensor = *sensor;
+    if (calibration.empty()) return newest;
     const bool whole = calibration.find('+') != std::string::npos;
     const Result<CalibrationSet> others = whole ? newest : measuredWith(store, info, *newest);
     if (!others) return others;
-    return parseSet(store, calibration, *others);
+    Result<CalibrationSet> wanted = parseSet(store, calibration, *others);
+    if (!wanted) return wanted;
+    const auto idOf = [](const std::optional<CalibrationRecord>& record) {
+        return record ? record->id : 0;
+    };
+    if (idOf(wanted->sensor) == idOf(*sensor)) return wanted;
+    return Error{ErrorKind::Usage,
+                 "calibration '" + calibration +
+                     "': the sensor's figures are in the sample's pictures already, and cannot be "
+                     "exchanged"};
+}
+
+/// Quality error for a tile that was merged with other figures of the sensor than the sample.
+Result<void> checkSameSensor(const CalibrationSet& set, const proc::SampleInfo& info) {
+    std::vector<const CalibrationRecord*> tiles{&set.black, &set.white};
+    if (set.zero) tiles.push_back(&*set.zero);
+    for (const CalibrationRecord* tile : tiles) {
+        const bool known = !tile->profileHash.empty() && !info.profileHash.empty();
+        if (!known || tile->profileHash == info.profileHash) continue;
+        return Error{ErrorKind::Quality,
+                     tile->kind + " calibration " + std::to_string(tile->id) +
+                         " was merged with other figures of the sensor, or another rig profile, "
+                         "than the sample; name one of the sample's: recalibrate --calibration"};
+    }
+    return {};
 }
 
 /// The sample's raw signals and both references hold every LED and band that it has.
@@ -74,7 +118,10 @@ Result<Original> original(Store& store, const std::string& name) {
     return Original{std::move(*record), std::move(*bytes), std::move(*sample)};
 }
 
-Result<std::string> workedOut(const Desk& desk, const Original& before, const CalibrationSet& set) {
+Result<std::string> workedOut(const Desk& desk,
+                              const Original& before,
+                              const CalibrationSet& set,
+                              int monteCarlo) {
     const Result<LoadedSet> loaded = loadSet(desk.store, set);
     if (!loaded) return loaded.error();
     RigProfile profile = desk.profile;
@@ -92,12 +139,15 @@ Result<std::string> workedOut(const Desk& desk, const Original& before, const Ca
     if (!complete) return complete.error();
     proc::SampleInfo info = before.sample.info;
     info.calibrationId = set.id();
+    if (monteCarlo > 0) noteDraws(monteCarlo, info);
+    const proc::MonteCarlo draws = drawsOf(info);
     info.referenceCertificate = certified->white->certificate().citation;
     // Whatever its verdicts say now: it was accepted when it was measured.
     proc::SampleSet sample = calibrateSample(*signals,
                                              anglesOf(before.sample),
                                              referencesOf(*loaded, *certified, profile),
-                                             std::move(info));
+                                             std::move(info),
+                                             draws);
     judgeTable(sample);
     return proc::encodeGonio(sample);
 }
@@ -111,7 +161,8 @@ Result<std::string> recalibrate(const Desk& desk, const JobRequest& request) {
     const Result<CalibrationSet> set =
         wantedSet(desk.store, before->sample.info, request.calibration);
     if (!set) return set.error();
-    const Result<std::string> bytes = workedOut(desk, *before, *set);
+    if (Result<void> same = checkSameSensor(*set, before->sample.info); !same) return same.error();
+    const Result<std::string> bytes = workedOut(desk, *before, *set, request.monteCarlo);
     if (!bytes) return bytes.error();
     if (Result<void> on = desk.goOn(); !on) return on.error();
     SampleRecord record = before->record;

@@ -44,14 +44,6 @@ Result<Captured> capture(const JobRun& run,
     return captured;
 }
 
-Result<void> expectPlaced(const JobRun& run, const std::string& reference) {
-    const std::string placed = run.bench().port.placed();
-    if (placed.empty() || placed == reference) return {};
-    return Error{ErrorKind::Quality,
-                 "under the rig lies '" + placed + "'; place the " + reference +
-                     " first: gonio sim place " + reference};
-}
-
 Result<void> placeMirror(const JobRun& run, const proc::Wedge& wedge) {
     const Result<bool> placed = run.bench().port.placeMirror(wedge);
     if (!placed) return placed.error();
@@ -148,7 +140,7 @@ Result<void> checkWhiteAgain(const JobRun& run,
 }  // namespace
 
 Result<Json> calibrateMirror(const JobRun& run) {
-    if (Result<void> placed = expectPlaced(run, "mirror"); !placed) return placed.error();
+    if (Result<void> placed = run.expectPlaced("mirror"); !placed) return placed.error();
     const Bench bench = run.measuring();
     run.bench().monitor.begin(mirrorSteps(bench));
     Result<LensRecord> lens =
@@ -176,7 +168,7 @@ Result<Json> calibrateMirror(const JobRun& run) {
 
 Result<Json> calibrateTile(const JobRun& run, const std::string& kind) {
     const bool white = kind == "white";
-    if (Result<void> placed = expectPlaced(run, kind); !placed) return placed.error();
+    if (Result<void> placed = run.expectPlaced(kind); !placed) return placed.error();
     // Looked for before minutes go into what would be refused without it.
     const Result<View> view = newestView(run);
     if (!view) return view.error();
@@ -219,7 +211,7 @@ Result<Json> calibrateTile(const JobRun& run, const std::string& kind) {
 }
 
 Result<Json> calibrateFlat(const JobRun& run) {
-    if (Result<void> placed = expectPlaced(run, "white"); !placed) return placed.error();
+    if (Result<void> placed = run.expectPlaced("white"); !placed) return placed.error();
     Result<View> view = newestView(run);
     if (!view) return view.error();
     view->corrections = {};
@@ -251,7 +243,7 @@ Result<Json> calibrateFlat(const JobRun& run) {
 }
 
 Result<Json> verifyWhite(const JobRun& run) {
-    if (Result<void> placed = expectPlaced(run, "white"); !placed) return placed.error();
+    if (Result<void> placed = run.expectPlaced("white"); !placed) return placed.error();
     const Result<View> view = newestView(run);
     if (!view) return view.error();
     const Result<ReferenceRecord> white = reference(run, "white", *view);
@@ -271,11 +263,12 @@ Result<Json> verifyWhite(const JobRun& run) {
                              state + ": no cell was seen both now and when white was calibrated"};
             }
             change.see(std::abs(ratio - 1), state);
-            texture.see(textureOf(now, then, ratio), state);
+            const double grain = textureOf(now, then, ratio);
+            texture.see(grain, state);
             states.push_back({{"led", led},
                               {"band", std::string(letter(band))},
                               {"ratio", ratio},
-                              {"texture", textureOf(now, then, ratio)}});
+                              {"texture", grain}});
         }
     }
     const Result<References> certified = loadReferences(run.profile());

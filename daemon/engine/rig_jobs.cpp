@@ -5,19 +5,13 @@
 #include "daemon/rig_records.h"
 #include "daemon/rig_sweeps.h"
 #include "daemon/stored_darks.h"
+#include "proc/core/number_text.h"
+#include "proc/quality/ambient.h"
 
 namespace gonio::daemon {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Result<void> expectWhite(const JobRun& run) {
-    const std::string placed = run.bench().port.placed();
-    if (placed.empty() || placed == "white") return {};
-    return Error{
-        ErrorKind::Quality,
-        "under the rig lies '" + placed + "'; place the white first: gonio sim place white"};
-}
 
 /// Keeps it, beside the rig.
 Result<CalibrationRecord> keep(const JobRun& run,
@@ -27,6 +21,21 @@ Result<CalibrationRecord> keep(const JobRun& run,
     if (!file) return file.error();
     return run.whileAlive(
         [&] { return run.keep({.kind = kind, .celsius = warmth}, {.file = *file}); });
+}
+
+/// Quality error for light that leaks in: it would be taken off every sample.
+Result<void> checkDark(const JobRun& run, const proc::DarkFrame& longest) {
+    constexpr double kSure = 5;
+    const auto mirror = run.bench().store.newestCalibration(run.serial(), "mirror");
+    if (!mirror || !*mirror) return {};  // nothing tells where the field is
+    const Result<LensRecord> lens = readLens(**mirror);
+    if (!lens) return {};
+    const auto light = proc::ambientLight(longest, lens->fit.map, kField, run.profile().noise);
+    if (!light || light->perSecond < kSure * light->u) return {};
+    return Error{ErrorKind::Quality,
+                 "light leaks in: " + fixed(light->perSecond, 0) + " electrons per second (u " +
+                     fixed(light->u, 0) +
+                     ") in the field with all LEDs off; cover the rig, or darken the room"};
 }
 
 Json documentOf(const JobRun& run, const CalibrationRecord& kept) {
@@ -39,7 +48,7 @@ Json documentOf(const JobRun& run, const CalibrationRecord& kept) {
 }  // namespace
 
 Result<Json> calibrateSensor(const JobRun& run) {
-    if (Result<void> placed = expectWhite(run); !placed) return placed.error();
+    if (Result<void> placed = run.expectPlaced("white"); !placed) return placed.error();
     Bench bench = run.measuring();
     const RigProfile& plain = run.bench().profile;  // not with what is to be found again
     const Bench onPlain{.rig = bench.rig,
@@ -74,7 +83,7 @@ Result<Json> calibrateSensor(const JobRun& run) {
 }
 
 Result<Json> calibrateLeds(const JobRun& run) {
-    if (Result<void> placed = expectWhite(run); !placed) return placed.error();
+    if (Result<void> placed = run.expectPlaced("white"); !placed) return placed.error();
     run.bench().monitor.begin(warmUpSteps());
     const Result<proc::LedMonitor> leds = measureWarmUp(run.measuring());
     if (!leds) return leds.error();
@@ -96,6 +105,7 @@ Result<Json> calibrateDark(const JobRun& run) {
     run.bench().monitor.begin(storedDarkSteps(bench));
     const Result<std::vector<proc::DarkFrame>> darks = measureDarks(bench);
     if (!darks) return darks.error();
+    if (Result<void> dark = checkDark(run, darks->back()); !dark) return dark.error();
     run.bench().monitor.captured();
     const std::optional<double> warmth = run.sensorCelsius();
     const auto kept =

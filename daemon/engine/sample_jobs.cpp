@@ -92,6 +92,9 @@ Result<Loaded> load(const JobRun& run) {
     Result<CalibrationSet> set = newestSet(run.bench().store, run.serial());
     if (!set) return set.error();
     if (Result<void> good = checkValidity(run, *set); !good) return good.error();
+    // One whose file cannot be read is not in the figures that the run goes by.
+    if (set->sensor && !run.profile().hash.ends_with("/" + std::to_string(set->sensor->id)))
+        set->sensor.reset();
     leaveOutStale(*set, run.now(), run.profile().validity);
     auto records = run.whileAlive([&] { return loadSet(run.bench().store, *set); });
     if (!records) return records.error();
@@ -179,11 +182,12 @@ Result<Json> measure(const JobRun& run) {
     about.referenceCertificate = loaded->certified.white->certificate().citation;
     about.calibrationId = loaded->set.id();
     run.finish(about, *captured);
+    if (run.request().monteCarlo > 0) noteDraws(run.request().monteCarlo, about);
     const std::vector<Radians> angles = run.ledAngles();
     proc::SampleSet sample;
     const auto kept = run.whileAlive([&]() -> Result<SampleRecord> {
         const Stopwatch calibrating(run.bench().computer);
-        sample = calibrateSample(captured->signals, angles, references, about);
+        sample = calibrateSample(captured->signals, angles, references, about, drawsOf(about));
         judgeCapture(sample, *captured, references);
         judgeTable(sample);
         judgeBacking(sample, *backing);

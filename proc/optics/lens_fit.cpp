@@ -61,18 +61,27 @@ DirectionUncertainty::DirectionUncertainty(const LensFit& fit)
     }
 }
 
-Radians DirectionUncertainty::operator()(const Direction& wo) const {
+std::optional<DirectionSlopes> DirectionUncertainty::slopes(const Direction& wo) const {
     const SensorPoint at = map_.pointOf(wo);
-    Eigen::Matrix<double, 3, LensMap::kParameters> slopes;
+    DirectionSlopes slopes;
     for (std::size_t i = 0; i < LensMap::kParameters; ++i) {
         const auto higher = slopes_[i].higher.directionAt(at);
         const auto lower = slopes_[i].lower.directionAt(at);
-        if (!higher || !lower) return Radians(kPi);
+        if (!higher || !lower) return std::nullopt;
         slopes.col(static_cast<Eigen::Index>(i)) =
             (higher->vector() - lower->vector()) / slopes_[i].width;
     }
+    return slopes;
+}
+
+Radians DirectionUncertainty::ofSlopes(const DirectionSlopes& slopes) const {
     // The trace is the sum of both tangential variances.
     return Radians(std::sqrt(0.5 * (slopes * covariance_ * slopes.transpose()).trace()));
+}
+
+Radians DirectionUncertainty::operator()(const Direction& wo) const {
+    const std::optional<DirectionSlopes> known = slopes(wo);
+    return known ? ofSlopes(*known) : Radians(kPi);
 }
 
 Result<LensFit> fitLens(std::span<const MirrorSpot> spots,

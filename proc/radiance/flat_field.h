@@ -25,7 +25,7 @@ struct FlatField {
 
     /// Radiance and variance as pixels that are all alike would have given them. The picture must
     /// have this window; any other is left as it is, and false is returned.
-    bool apply(MergedState& state) const;
+    [[nodiscard]] bool apply(MergedState& state) const;
     bool operator==(const FlatField&) const = default;
 };
 

@@ -84,6 +84,21 @@ TEST(RigRecords, DarkFramesComeBack) {
     EXPECT_EQ((*back)[0].hot[0].excessDn, 17);
     darks[0].hot[0].x = 40;
     EXPECT_EQ(decodeDarks(*encodeDarks(darks), "dark").error().kind, ErrorKind::File);
+    darks[0].hot.clear();
+    darks[1].window.x = 8;
+    EXPECT_FALSE(decodeDarks(*encodeDarks(darks), "dark")) << "of another window";
+    darks[1].window.x = 4;
+    darks[1].mean.at(1, 1) = std::numeric_limits<float>::infinity();
+    EXPECT_FALSE(decodeDarks(*encodeDarks(darks), "dark")) << "not finite";
+}
+
+TEST(RigRecords, HostileNumbersAreFileErrors) {
+    proc::FlatField flat{.response = Image<float>(kSize, 1.0F), .window = {.size = kSize}};
+    flat.window.binning = 0;
+    EXPECT_EQ(decodeFlat(*encodeFlat(flat), "x").error().kind, ErrorKind::File);
+    proc::LedMonitor leds;
+    leds.bands[0].perKelvin = -1;
+    EXPECT_EQ(decodeLeds(encodeLeds(leds), "x").error().kind, ErrorKind::File);
 }
 
 TEST(RigRecords, WhatIsNoneIsAFileError) {

@@ -26,26 +26,25 @@ TEST(LedDrift, SizeZeroIsOneExactly) {
     }
 }
 
-TEST(LedDrift, AnLedWarmsUpExponentiallyToItsDriveLevelAndCoolsInTheDark) {
+TEST(LedDrift, TheBoardWarmsUpExponentiallyToTheDriveLevelAndCoolsInTheDark) {
     LedDrift drift(7, kSize);
-    EXPECT_EQ(drift.heat(2, Band::G), 0);
+    EXPECT_EQ(drift.heat(), 0);
     drift.run(lit(2, Band::G, 0.5), 2s);
-    EXPECT_NEAR(drift.heat(2, Band::G), 0.5 * (1 - std::exp(-1.0)), 1e-5);
+    EXPECT_NEAR(drift.heat(), 0.5 * (1 - std::exp(-1.0)), 1e-5);
     drift.run(lit(2, Band::G, 0.5), 100s);
-    EXPECT_NEAR(drift.heat(2, Band::G), 0.5, 1e-5);
+    EXPECT_NEAR(drift.heat(), 0.5, 1e-5);
+    EXPECT_NEAR(drift.boardKelvin(), 1.5, 3e-5);
     drift.run({}, 2s);
-    EXPECT_NEAR(drift.heat(2, Band::G), 0.5 * std::exp(-1.0), 1e-5);
-    drift.run(lit(1, Band::R), 2s);  // another is lit
-    EXPECT_NEAR(drift.heat(2, Band::G), 0.5 * std::exp(-2.0), 1e-5);
-    EXPECT_NEAR(drift.heat(1, Band::R), 1 - std::exp(-1.0), 1e-5);
-    EXPECT_EQ(drift.heat(1, Band::G), 0);
+    EXPECT_NEAR(drift.heat(), 0.5 * std::exp(-1.0), 1e-5);
+    drift.run(lit(1, Band::R), 100s);  // another is lit
+    EXPECT_NEAR(drift.heat(), 1, 1e-5);
 }
 
 TEST(LedDrift, ManyShortExposuresHeatAsOneLongOne) {
     LedDrift once(7, kSize), often(7, kSize);
     once.run(lit(0, Band::R), 500ms);
     for (int i = 0; i < 50; ++i) often.run(lit(0, Band::R), 10ms);
-    EXPECT_NEAR(once.heat(0, Band::R), often.heat(0, Band::R), 1e-12);
+    EXPECT_NEAR(once.heat(), often.heat(), 1e-12);
 }
 
 TEST(LedDrift, HeatCostsRedMost) {

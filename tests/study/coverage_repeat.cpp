@@ -9,6 +9,7 @@
 #include "daemon/sample_pose.h"
 #include "proc/core/parallel.h"
 #include "proc/models/spec.h"
+#include "proc/quality/seen_direction.h"
 #include "sim/light.h"
 
 namespace gonio::study {
@@ -48,12 +49,6 @@ double slopeAt(const Scatterer& surface, const Direction& wi, std::size_t cell) 
     return std::hypot(f(surface, wi, theta + half, phi) - f(surface, wi, theta - half, phi),
                       f(surface, wi, theta, phi + across) - f(surface, wi, theta, phi - across)) /
            f(surface, wi, theta, phi);
-}
-
-/// As `gonio measure` does it.
-proc::SampleSet flattened(proc::SampleSet set, const proc::AngleUncertainty& uAngle) {
-    const Radians uLens = uAngle(Direction::fromSpherical(kTypicalView, Radians(0)));
-    return daemon::referredToItsNormal(std::move(set), uLens);
 }
 
 }  // namespace
@@ -115,29 +110,51 @@ std::vector<Verdict> CoverageStudy::repeat(std::uint64_t seed) const {
     const auto whites = tile(sim::Role::White, white_);
     const auto blacks = tile(sim::Role::Black, black_);
 
+    std::vector<Radians> incidences;
+    for (const int led : kLeds) incidences.push_back(sim::ledDirection(led).theta());
     std::vector<Verdict> verdicts;
     for (std::size_t m = 0; m < surfaces_.size(); ++m) {
         const sim::Placement placement{
             .role = sim::Role::Sample, .surface = surfaces_[m], .wedge = draw.tilt(m)};
-        proc::SampleSet set;
-        for (std::size_t i = 0; i < kLeds.size(); ++i) {
-            const int led = kLeds[i];
-            const proc::CellSignal signal =
-                rig_.signal(placement, led, materials()[m].glossy, capture++, draw, darks, binning);
-            proc::LedTable table{.incidence = sim::ledDirection(led).theta(), .bands = {}};
-            table.bands[index(kBand)] = proc::calibrate(signal,
-                                                        {.whiteSignal = whites[i],
-                                                         .blackSignal = blacks[i],
-                                                         .white = *white_,
-                                                         .black = *black_},
-                                                        sim::ledDirection(led),
-                                                        kBand,
-                                                        {.angle = uAngle, .ledDrift = kLedDrift})
-                                            .samples;
-            set.leds.push_back(std::move(table));
+        std::vector<proc::CellSignal> signals;
+        for (const int led : kLeds) {
+            signals.push_back(rig_.signal(
+                placement, led, materials()[m].glossy, capture++, draw, darks, binning));
         }
-        const proc::SampleSet flat =
-            materials()[m].glossy ? flattened(std::move(set), uAngle) : std::move(set);
+        const auto calibrated = [&](const auto& uOf) {
+            proc::SampleSet set;
+            for (std::size_t i = 0; i < kLeds.size(); ++i) {
+                const Direction wi = sim::ledDirection(kLeds[i]);
+                const proc::AngleUncertainty ofLed = [&](const Direction& wo) {
+                    return uOf(i, wo);
+                };
+                proc::LedTable table{.incidence = wi.theta(), .bands = {}};
+                table.bands[index(kBand)] = proc::calibrate(signals[i],
+                                                            {.whiteSignal = whites[i],
+                                                             .blackSignal = blacks[i],
+                                                             .white = *white_,
+                                                             .black = *black_},
+                                                            wi,
+                                                            kBand,
+                                                            {.angle = ofLed, .ledDrift = kLedDrift})
+                                                .samples;
+                set.leds.push_back(std::move(table));
+            }
+            return set;
+        };
+        proc::SampleSet flat =
+            calibrated([&](std::size_t, const Direction& wo) { return uAngle(wo); });
+        if (materials()[m].glossy) {  // as `gonio measure` does it
+            const auto tilt = proc::estimateTilt(
+                flat, uAngle(Direction::fromSpherical(kTypicalView, Radians(0))));
+            if (daemon::worthCorrecting(tilt)) {
+                const proc::SeenDirection seen(lens, incidences, *tilt);
+                flat = calibrated([&](std::size_t led, const Direction& wo) {
+                    return seen.uncertainty(led, wo);
+                });
+            }
+            flat = daemon::referredToItsNormal(std::move(flat), tilt);
+        }
         for (std::size_t i = 0; i < kLeds.size(); ++i) {
             const proc::CellSamples& cells = flat.leds[i].bands[index(kBand)];
             for (std::size_t cell = 0; cell < cells.size(); ++cell) {

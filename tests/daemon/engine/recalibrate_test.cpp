@@ -34,6 +34,7 @@ protected:
         auto read = readProfile(defaultProfile());
         ASSERT_TRUE(read) << read.error().message;
         profile = std::move(*read);
+        profile.hash = "abc";
         keepLens(1.1);
         keepReference("black", kBothLeds, kBlack);
         keepReference("white", kBothLeds, kWhite);
@@ -62,8 +63,9 @@ protected:
              .signals = {signals.begin(), signals.begin() + static_cast<std::ptrdiff_t>(count)}},
             {0_deg, 20_deg});
         ASSERT_TRUE(bytes) << bytes.error().message;
-        ASSERT_TRUE(store->addCalibration({.rig = "R", .kind = kind, .dateUtc = "t"},
-                                          {.file = *bytes, .raw = raw(leds, radiance)}));
+        ASSERT_TRUE(store->addCalibration(
+            {.rig = "R", .kind = kind, .dateUtc = "t", .profileHash = profile.hash},
+            {.file = *bytes, .raw = raw(leds, radiance)}));
     }
     void keepSample(const std::string& calibration) {
         const auto set = newestSet(*store, "R");
@@ -72,11 +74,11 @@ protected:
         ASSERT_TRUE(loaded) << loaded.error().message;
         const auto certified = loadReferences(profile);
         ASSERT_TRUE(certified) << certified.error().message;
-        const auto sample =
-            calibrateSample(signalsOf(kBothLeds, kGrey),
-                            {0_deg, 20_deg},
-                            {loaded->view.lens, loaded->white, loaded->black, *certified, profile},
-                            {.name = "tile", .rigSerial = "R", .calibrationId = calibration});
+        const auto sample = calibrateSample(
+            signalsOf(kBothLeds, kGrey),
+            {0_deg, 20_deg},
+            {loaded->view.lens, loaded->white, loaded->black, *certified, profile},
+            {.name = "tile", .rigSerial = "R", .profileHash = "abc", .calibrationId = calibration});
         const auto bytes = proc::encodeGonio(sample);
         ASSERT_TRUE(bytes) << bytes.error().message;
         ASSERT_TRUE(store->addSample({.name = "tile", .rig = "R", .dateUtc = "t"},
@@ -109,6 +111,17 @@ TEST_F(StoredSample, WithItsOwnCalibrationIsTheSame) {
     EXPECT_EQ(Json::parse(*same)["calibration"], "1+2+3");
 }
 
+TEST_F(StoredSample, DrawsAreKeptWithItAndMakeItsUncertaintiesAgain) {
+    const Desk desk{.store = *store, .profile = profile, .utcNow = [] { return "t"; }};
+    const auto drawn =
+        recalibrate(desk, {.kind = JobKind::Recalibrate, .name = "tile", .monteCarlo = 200});
+    ASSERT_TRUE(drawn) << drawn.error().message;
+    EXPECT_FALSE(Json::parse(*drawn)["identical"]);
+    const auto same = again();
+    ASSERT_TRUE(same) << same.error().message;
+    EXPECT_TRUE(Json::parse(*same)["identical"]) << "as it was worked out";
+}
+
 TEST_F(StoredSample, OneNumberTakesThePlaceOfItsKindInWhatItWasMeasuredWith) {
     keepReference("white", kBothLeds, kWhite);  // 4
     const auto with = again("4");
@@ -128,6 +141,24 @@ TEST_F(StoredSample, OfAnOlderNameIsCompletedByTheNewest) {
     const auto with = again("3");
     ASSERT_TRUE(with) << with.error().message;
     EXPECT_EQ(Json::parse(*with)["calibration"], "1+2+3");
+}
+
+TEST_F(StoredSample, ItsSensorCannotBeExchangedNorTilesOfOtherFiguresBeUsed) {
+    ASSERT_TRUE(store->addCalibration({.rig = "R", .kind = "sensor", .dateUtc = "t"},
+                                      {.file = "{}", .raw = {}}));  // 4
+    expectRefused("4", ErrorKind::Usage, "cannot be exchanged");
+    expectRefused("1+2+3+4", ErrorKind::Usage, "cannot be exchanged");
+    const auto same = again();
+    ASSERT_TRUE(same) << same.error().message;
+    EXPECT_EQ(Json::parse(*same)["calibration"], "1+2+3") << "the newest sensor is not its own";
+    profile.hash = "abc/4";  // of the tiles that are taken from now on
+    keepReference("white", kBothLeds, kWhite);
+    const auto kept = store->sample("tile");
+    ASSERT_TRUE(kept);
+    const auto sample = proc::readGonio(kept->file);
+    ASSERT_TRUE(sample);
+    EXPECT_EQ(sample->info.profileHash, "abc");
+    expectRefused("", ErrorKind::Quality, "figures of the sensor");
 }
 
 TEST_F(StoredSample, IsLetBeWhenTheJobIsEndedMeanwhile) {
