@@ -20,7 +20,6 @@ constexpr std::size_t kLedBoard = 0, kSensor = 1;
 // Longer than an LED's chip needs to cool, and to warm up.
 constexpr Microseconds kColdExposure{100'000}, kWarmExposure{100'000};
 constexpr int kColdFrames = 60, kWarmFrames = 20, kWarmSteps = 2, kFramesOfEach = 4, kCycles = 4;
-constexpr int kNone = -1;
 constexpr double kWarmLevelDn = 0.6;  // of full scale, that a warm-up aims at
 
 Error tooDark(const std::string& what) {
@@ -135,6 +134,19 @@ Result<proc::WarmUpPoint> pointOf(const Frame& frame, Band band, const proc::Sen
         .celsius = *frame.celsius[kLedBoard]};
 }
 
+/// Of the frames of one capture: what the LED wanders by they share, so that they are one point.
+proc::WarmUpPoint meanOf(const std::vector<proc::WarmUpPoint>& frames, double time) {
+    proc::WarmUpPoint mean{.signal = 0, .u = 0, .current = 0, .celsius = 0, .time = time};
+    const auto n = static_cast<double>(frames.size());
+    for (const proc::WarmUpPoint& frame : frames) {
+        mean.signal += frame.signal / n;
+        mean.u += frame.u / (n * std::sqrt(n));
+        mean.current += frame.current / n;
+        mean.celsius += frame.celsius / n;
+    }
+    return mean;
+}
+
 /// The exposure is short, so that full level does not saturate; what warms the LED is how long it
 /// is lit, in frames that are taken and thrown away.
 Result<std::vector<proc::WarmUpPoint>> warmUp(const Bench& bench,
@@ -143,38 +155,40 @@ Result<std::vector<proc::WarmUpPoint>> warmUp(const Bench& bench,
     const Result<double> bright = brightness(sequencer, state, 1, kFirstLook);
     if (!bright) return bright.error();
     const double aim = kWarmLevelDn * bench.profile.noise.fullScaleDn / *bright;
-    const Microseconds look(std::lround(std::min(aim, static_cast<double>(kLongest.count()))));
+    const Microseconds exposure(std::lround(std::min(aim, static_cast<double>(kLongest.count()))));
     std::vector<KnownShot> shots;
-    std::vector<int> cycleOf;  // of each shot that is looked at; the others: none
-    const auto list = [&](const KnownShot& shot, int cycle) {
+    std::vector<bool> looked;  // of each shot: the others warm and cool
+    const auto list = [&](const KnownShot& shot, bool isLooked) {
         shots.push_back(shot);
-        cycleOf.push_back(cycle);
+        looked.push_back(isLooked);
     };
     const KnownShot cool{.state = {}, .shot = {.exposure = kColdExposure}, .frames = kColdFrames};
     const KnownShot warm{
         .state = state, .shot = {.exposure = kWarmExposure}, .frames = kWarmFrames};
-    const KnownShot see{.state = state, .shot = {.exposure = look}, .frames = kFramesOfEach};
+    const KnownShot see{.state = state, .shot = {.exposure = exposure}, .frames = kFramesOfEach};
     for (int cycle = 0; cycle < kCycles; ++cycle) {
-        list(cool, kNone);
-        list(see, cycle);
+        list(cool, false);
+        list(see, true);
         for (int i = 0; i < kWarmSteps; ++i) {
-            list(warm, kNone);
-            list(see, cycle);
+            list(warm, false);
+            list(see, true);
         }
     }
-    std::vector<proc::WarmUpPoint> points;
+    std::vector<proc::WarmUpPoint> points, look;
     const Result<void> taken =
         sequencer.take(shots,
                        {.frame = [&](std::size_t shot, const Frame& frame) -> Result<void> {
-                            if (cycleOf[shot] == kNone) return {};
-                            auto point = pointOf(frame, state.band, bench.profile.noise);
+                            if (!looked[shot]) return {};
+                            const auto point = pointOf(frame, state.band, bench.profile.noise);
                             if (!point) return point.error();
-                            point->cycle = cycleOf[shot];
-                            points.push_back(*point);
+                            look.push_back(*point);
                             return {};
                         },
                         .done =
-                            [&](std::size_t) {
+                            [&](std::size_t shot) {
+                                if (!look.empty())
+                                    points.push_back(meanOf(look, static_cast<double>(shot)));
+                                look.clear();
                                 return bench.step("warm-up in " + std::string(letter(state.band)));
                             }});
     if (!taken) return taken.error();

@@ -1,8 +1,8 @@
 #include "proc/radiance/led_monitor.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "proc/core/number_text.h"
 
@@ -12,24 +12,6 @@ namespace {
 constexpr std::size_t kLeastPoints = 8;
 constexpr double kLeastKelvin = 0.2;
 constexpr double kFinestMatters = 5e-4, kFullLevel = 65535;
-
-double level(const WarmUpPoint& p) { return p.signal / p.current; }
-double weight(const WarmUpPoint& p) { return std::pow(p.current / p.u, 2); }
-
-/// Weighted, of several frames.
-class Mean {
-public:
-    void add(const WarmUpPoint& p) {
-        weights_ += weight(p);
-        levels_ += weight(p) * gonio::proc::level(p);
-        celsius_ += weight(p) * p.celsius;
-    }
-    [[nodiscard]] double level() const { return levels_ / weights_; }
-    [[nodiscard]] double celsius() const { return celsius_ / weights_; }
-
-private:
-    double weights_ = 0, levels_ = 0, celsius_ = 0;
-};
 
 Error refused(const std::string& what) {
     return {.kind = ErrorKind::Quality, .message = "warm-up of the LED: " + what};
@@ -42,15 +24,14 @@ Result<WarmUpFit> fitWarmUp(std::span<const WarmUpPoint> points) {
         return refused(std::to_string(points.size()) + " frames, wanted " +
                        std::to_string(kLeastPoints) + " at least");
     }
-    std::map<int, Mean> cycles;
-    Mean all;
-    double coldest = points.front().celsius, warmest = coldest;
+    double celsius = 0, time = 0, coldest = points.front().celsius, warmest = coldest;
+    const auto count = static_cast<double>(points.size());
     for (const WarmUpPoint& p : points) {
         if (!(p.u > 0) || !(p.signal > 0) || !(p.current > 0) || !std::isfinite(p.celsius)) {
             return refused("a frame without light, uncertainty or temperature");
         }
-        cycles[p.cycle].add(p);
-        all.add(p);
+        celsius += p.celsius / count;
+        time += p.time / count;
         coldest = std::min(coldest, p.celsius);
         warmest = std::max(warmest, p.celsius);
     }
@@ -59,26 +40,27 @@ Result<WarmUpFit> fitWarmUp(std::span<const WarmUpPoint> points) {
                        " K only, wanted " + fixed(kLeastKelvin, 1) +
                        "; let the rig cool for a minute, and try again");
     }
-    if (points.size() < 2 * cycles.size()) return refused("a cycle of a single frame");
-    double xx = 0, xy = 0;
-    for (const WarmUpPoint& p : points) {
-        const Mean& own = cycles[p.cycle];
-        const double x = p.celsius - own.celsius();
-        xx += weight(p) * x * x;
-        xy += weight(p) * x * (level(p) - own.level());
+    Eigen::MatrixX3d rows(std::ssize(points), 3);  // 1, T - T_0, t, each over its point's u
+    Eigen::VectorXd seen(rows.rows());
+    for (Eigen::Index j = 0; j < rows.rows(); ++j) {
+        const WarmUpPoint& p = points[static_cast<std::size_t>(j)];
+        const double weight = p.current / p.u;
+        rows.row(j) << weight, weight * (p.celsius - celsius), weight * (p.time - time);
+        seen(j) = weight * p.signal / p.current;
     }
-    const double slope = xy / xx;
-    WarmUpFit fit{.perKelvin = slope / all.level(),
-                  .celsius = all.celsius(),
-                  .freedom = points.size() - cycles.size() - 1};
-    for (const WarmUpPoint& p : points) {
-        const Mean& own = cycles[p.cycle];
-        const double left = level(p) - own.level() - slope * (p.celsius - own.celsius());
-        fit.chiSquare += weight(p) * left * left;
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixX3d> qr(rows);
+    if (qr.rank() < rows.cols()) {
+        return refused("temperature and time went together; let the LED cool in between");
     }
-    // The LED wanders within a cycle too: what noise does not explain makes the slope less certain.
+    const Eigen::Vector3d found = qr.solve(seen);
+    WarmUpFit fit{.perKelvin = found(1) / found(0),
+                  .celsius = celsius,
+                  .chiSquare = (seen - rows * found).squaredNorm(),
+                  .freedom = points.size() - 3};
+    // What wanders otherwise than straight makes the slope less certain.
     const double widened = std::max(1.0, fit.chiSquare / static_cast<double>(fit.freedom));
-    fit.uPerKelvin = std::sqrt(widened / xx) / all.level();
+    const Eigen::Matrix3d covariance = (rows.transpose() * rows).inverse();
+    fit.uPerKelvin = std::sqrt(widened * covariance(1, 1)) / found(0);
     return fit;
 }
 

@@ -4,10 +4,11 @@
 // board. Of a band,
 //     light = i (1 + k (T - T_0)),   i = I / (I_full L / 65535),
 // k is fitted while an LED that was cold warms up on a steady sample, several times over:
-//     S_j / i_j = a_c (1 + k (T_j - T_0)),   S_j the mean signal of frame j, in cycle c,
-// by weighted least squares; each cycle has a level of its own, as the LED wanders meanwhile. What
-// temperature and current do not tell of (an LED that wanders) is left: the first bracket, repeated
-// at the end of a run, shows it (proc/quality/repeat.h).
+//     S_j / i_j = a (1 + k (T_j - T_0)) + b t_j,   S_j the mean signal of frame j,
+// by weighted least squares, linear in a, a k and b. b is what the LED wanders by meanwhile: each
+// cycle begins cold again, so that time and temperature can be told apart. What temperature and
+// current do not tell of is left: the first bracket, repeated at the end of a run, shows it
+// (proc/quality/repeat.h).
 
 #include <array>
 #include <cstdint>
@@ -24,7 +25,7 @@ struct WarmUpPoint {
     double u = 0;        ///< standard uncertainty
     double current = 1;  ///< i
     double celsius = 0;  ///< T
-    int cycle = 0;       ///< c
+    double time = 0;     ///< t, any unit
 };
 
 struct WarmUpFit {
@@ -34,9 +35,8 @@ struct WarmUpFit {
     std::size_t freedom = 0;
 };
 
-/// Quality error with fewer than eight points or one in a cycle, points without signal or
-/// uncertainty, or where the temperature rose by less than 0.2 K, so that there is nothing to fit
-/// to.
+/// Quality error with fewer than eight points, points without signal or uncertainty, or where the
+/// temperature rose by less than 0.2 K, or with time alone, so that there is nothing to fit to.
 [[nodiscard]] Result<WarmUpFit> fitWarmUp(std::span<const WarmUpPoint> points);
 
 /// How an LED was driven in an exposure.
