@@ -250,7 +250,8 @@ Result<void> simPlace(const CommonOptions& common, PlaceRequest place) {
                  {"translucency", place.translucency},
                  {"backing", place.backing},
                  {"softness", place.softness},
-                 {"ambient", place.ambient}};
+                 {"ambient", place.ambient},
+                 {"turned_deg", place.turnedDegrees}};
     if (place.rigErrors) request["rig_errors"] = *place.rigErrors;
     if (place.seed) request["seed"] = *place.seed;
     if (place.serial) request["serial"] = *place.serial;

@@ -161,6 +161,7 @@ TEST_F(BadInputAtDaemon, MeasuringBeforeCalibratingSaysWhatToRun) {
 
 TEST_F(BadInputAtDaemon, PlacementsThatMakeNoSenseAreRefusedBeforeTheyAreKept) {
     const std::string missing = (gonio / "none.bsdf").string();
+    expectRefused(gonio({"sim", "place", "black", "--turned", "30"}), kUsage, {"only the white"});
     expectRefused(gonio({"sim", "place", missing}), kFile, {missing});
     expectRefused(gonio({"sim", "place", "sample:none"}), kFile, {"sample:none"});
     expectRefused(gonio({"sim", "place", "model:lambret"}), kUsage, {"lambret"});
@@ -174,6 +175,9 @@ TEST_F(BadInputAtDaemon, PlacementsThatMakeNoSenseAreRefusedBeforeTheyAreKept) {
         expectRefused(gonio({"sim", "place", "white", "--serial=" + serial}), kUsage, {"serial"});
     }
     EXPECT_FALSE(std::filesystem::exists(gonio / "store/sim.json"));
+    const Ran turned = gonio({"--json", "sim", "place", "white", "--turned", "30"});
+    EXPECT_EQ(turned.exitCode, 0) << turned.err;
+    EXPECT_NE(turned.out.find("\"turned_deg\": 30"), std::string::npos) << turned.out;
 }
 
 TEST_F(BadInputAtDaemon, SessionsAndJobsThatAreNotThereAreSaid) {
