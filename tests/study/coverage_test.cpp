@@ -55,7 +55,7 @@ constexpr bool kSlow = false;
 TEST(CoverageReport, IsWithin94To96PerCent) {
     if (std::getenv("GONIO_NIGHTLY") == nullptr || kSlow) GTEST_SKIP() << "a nightly study";
     constexpr std::uint64_t kReported = 4400;
-        const CoverageRows rows = CoverageStudy(kStrip).run(0, kReported);
+    const CoverageRows rows = CoverageStudy(kStrip).run(0, kReported);
     for (const Row& row : rows.rows()) {
         if (row.repeats.empty()) continue;
         const std::string where = row.name() + (row.flank ? " flank" : " even");
