@@ -88,8 +88,7 @@ std::string otherProfile(const CalibrationRecord& calibration, const RigNow& now
     if (!isTile(calibration)) return {};
     return now.profileHash.find('/') == std::string::npos
                ? " was taken with a sensor calibration that is no longer good; run: gonio "
-                 "calibrate "
-                 "sensor"
+                 "calibrate sensor"
                : " was taken with other figures of the sensor";
 }
 

@@ -59,10 +59,12 @@ State middleState(const driver::Rig& rig) {
     return {static_cast<int>(rig.identify().ledAngles.size()) / 2, Band::G};
 }
 
-Result<SensorRecord> takeSensor(const Bench& bench) {
-    if (Result<Window> window = evenPart(bench.rig); !window) return window.error();
-    Sequencer sequencer(bench.rig, bench.profile, bench.nextPlanStep, bench.alive);
-    const State state = middleState(bench.rig);
+/// The frames of a sweep, pair by pair.
+struct Sweep {
+    std::vector<Frame> lit, dark;
+};
+
+Result<Sweep> takeSweep(const Bench& bench, Sequencer& sequencer, State state) {
     const Result<double> bright = brightness(sequencer, state, 1, kFirstLook);
     if (!bright) return bright.error();
     const double range = bench.profile.noise.fullScaleDn - bench.rig.identify().blackLevel;
@@ -78,27 +80,33 @@ Result<SensorRecord> takeSensor(const Bench& bench) {
     for (int k = 1; k <= kExposures; ++k) list({}, k);
     for (int k = 1; k <= kExposures; ++k) list(state, k);
     for (int k = kExposures; k >= 1; --k) list(state, k);
-    std::vector<Frame> lit, dark;
-    const Result<void> taken =
-        sequencer.take(shots,
-                       {.frame = [&](std::size_t shot, Frame frame) -> Result<void> {
-                            (shots[shot].state ? lit : dark).push_back(std::move(frame));
-                            return {};
-                        },
-                        .done =
-                            [&](std::size_t shot) {
-                                return bench.step(shots[shot].state ? "exposures" : "dark frames");
-                            }});
+    Sweep sweep;
+    const Result<void> taken = sequencer.take(
+        shots,
+        {.frame = [&](std::size_t shot, Frame frame) -> Result<void> {
+             (shots[shot].state ? sweep.lit : sweep.dark).push_back(std::move(frame));
+             return {};
+         },
+         .done =
+             [&](std::size_t shot) {
+                 return bench.step(shots[shot].state ? "exposures" : "dark frames");
+             }});
     if (!taken) return taken.error();
+    return sweep;
+}
 
+/// `noise`: the data sheet's, of which gain and read noise are found anew.
+Result<SensorRecord> sensorOf(const std::vector<Frame>& lit,
+                              const std::vector<Frame>& dark,
+                              Band band,
+                              proc::SensorNoise noise) {
     std::vector<proc::FlatPair> pairs;
     for (const std::vector<Frame>* frames : {&dark, &lit}) {
         for (std::size_t i = 0; i + 1 < frames->size(); i += kPair)
             pairs.push_back({&(*frames)[i], &(*frames)[i + 1]});
     }
-    auto transfer = proc::photonTransfer(pairs, bench.profile.noise);
+    auto transfer = proc::photonTransfer(pairs, noise);
     if (!transfer) return transfer.error();
-    proc::SensorNoise noise = bench.profile.noise;
     noise.electronsPerDn = transfer->electronsPerDn;
     noise.readNoiseElectrons = transfer->readNoiseElectrons;
     proc::DarkLibrary darks;
@@ -107,7 +115,7 @@ Result<SensorRecord> takeSensor(const Bench& bench) {
         if (!mean) return mean.error();
         darks.add(std::move(*mean));
     }
-    auto sweep = proc::sweepPoints(lit, state.band, darks, noise);
+    auto sweep = proc::sweepPoints(lit, band, darks, noise);
     if (!sweep) return sweep.error();
     auto linearity = proc::fitLinearity(*sweep, lit.front().blackLevel);
     if (!linearity) return linearity.error();
@@ -116,6 +124,15 @@ Result<SensorRecord> takeSensor(const Bench& bench) {
                         .sweep = std::move(*sweep),
                         .celsius = lit.front().celsius[kSensor],
                         .dateUtc = {}};
+}
+
+Result<SensorRecord> takeSensor(const Bench& bench) {
+    if (Result<Window> window = evenPart(bench.rig); !window) return window.error();
+    Sequencer sequencer(bench.rig, bench.profile, bench.nextPlanStep, bench.alive);
+    const State state = middleState(bench.rig);
+    const Result<Sweep> sweep = takeSweep(bench, sequencer, state);
+    if (!sweep) return sweep.error();
+    return sensorOf(sweep->lit, sweep->dark, state.band, bench.profile.noise);
 }
 
 /// One frame of a warm-up, without uncertainty of the dark: it is common to all.

@@ -49,7 +49,7 @@ Json documentOf(const JobRun& run, const CalibrationRecord& kept) {
 
 Result<Json> calibrateSensor(const JobRun& run) {
     if (Result<void> placed = run.expectPlaced("white"); !placed) return placed.error();
-    Bench bench = run.measuring();
+    const Bench bench = run.measuring();
     const RigProfile& plain = run.bench().profile;  // not with what is to be found again
     const Bench onPlain{.rig = bench.rig,
                         .profile = plain,
