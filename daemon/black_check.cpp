@@ -40,7 +40,7 @@ std::optional<BlackCheck> checkBlack(const RigReferences& references,
                             referencesOf(references, {static_cast<int>(led), band}),
                             wi,
                             band,
-                            {.angle = [](const Direction&) { return Radians(0); }});
+                            {.angle = [](std::size_t) { return Radians(0); }});
         for (std::size_t cell = 0; cell < seen.samples.size(); ++cell) {
             if (!seen.samples.present(cell)) continue;
             measured.push_back(seen.samples.f[cell]);

@@ -14,6 +14,8 @@
 #include "daemon/then_dark.h"
 #include "proc/core/median.h"
 #include "proc/core/number_text.h"
+#include "proc/core/parallel.h"
+#include "proc/optics/cell_grid.h"
 #include "proc/optics/spot.h"
 #include "proc/quality/seen_direction.h"
 #include "proc/radiance/merge.h"
@@ -163,14 +165,25 @@ std::optional<double> achieved(const proc::SampleSet& set) {
     return median(std::move(relative));
 }
 
-/// Standard uncertainty of where an LED's cell lies, per axis.
-using LedAngleUncertainty = std::function<Radians(std::size_t led, const Direction& wo)>;
+/// Of each cell in the field: standard uncertainty of where it lies, per axis.
+using CellAngles = std::vector<Radians>;
 
-/// As if it lay flat, with the budgets of its states.
+CellAngles overField(const std::function<Radians(const Direction&)>& uAngle) {
+    CellAngles angles(proc::CellGrid::count());
+    parallelFor(angles.size(), [&](IndexRange cells) {
+        for (std::size_t cell = cells.begin; cell < cells.end; ++cell) {
+            const Direction wo = proc::CellGrid::centre(cell);
+            if (wo.theta() < kField) angles[cell] = uAngle(wo);
+        }
+    });
+    return angles;
+}
+
+/// As if it lay flat, with the budgets of its states; `uAngle`: of each LED's cells.
 proc::SampleSet asIfFlat(const PlacementSignals& signals,
                          const std::vector<Radians>& ledAngles,
                          const RigReferences& references,
-                         const LedAngleUncertainty& uAngle,
+                         const std::vector<CellAngles>& uAngle,
                          const proc::MonteCarlo& monteCarlo) {
     const int spots = references.lens.spots;
     proc::AngleUncertainty ofLed;
@@ -184,7 +197,7 @@ proc::SampleSet asIfFlat(const PlacementSignals& signals,
     Json budgets = Json::array();
     for (std::size_t led = 0; led < signals.size(); ++led) {
         proc::LedTable table{.incidence = ledAngles[led], .bands = {}};
-        ofLed = [&](const Direction& wo) { return uAngle(led, wo); };
+        ofLed = [&](std::size_t cell) { return uAngle[led][cell]; };
         for (Band band : kBands) {
             const std::size_t b = index(band);
             rig.ledDrift = std::hypot(references.profile.ledDrift, references.uMonitor[b]);
@@ -292,15 +305,17 @@ proc::SampleSet calibrateSample(const PlacementSignals& signals,
     constexpr Radians kTypicalView = 40_deg;
     const proc::LensFit& lens = references.lens.fit;
     const proc::DirectionUncertainty uAngle(lens);
-    const auto ofMap = [&](std::size_t, const Direction& wo) { return uAngle(wo); };
+    const std::vector<CellAngles> ofMap(signals.size(), overField(uAngle));
     proc::SampleSet set = asIfFlat(signals, ledAngles, references, ofMap, monteCarlo);
     const Radians uLens = uAngle(Direction::fromSpherical(kTypicalView, Radians(0)));
     const std::optional<proc::TiltEstimate> tilt = proc::estimateTilt(set, uLens);
     if (worthCorrecting(tilt)) {
         const proc::SeenDirection seen(lens, ledAngles, *tilt);
-        const auto ofLobes = [&](std::size_t led, const Direction& wo) {
-            return seen.uncertainty(led, wo);
-        };
+        std::vector<CellAngles> ofLobes;
+        for (std::size_t led = 0; led < signals.size(); ++led) {
+            ofLobes.push_back(
+                overField([&](const Direction& wo) { return seen.uncertainty(led, wo); }));
+        }
         set = asIfFlat(signals, ledAngles, references, ofLobes, monteCarlo);
     }
     info.budgetJson = std::move(set.info.budgetJson);

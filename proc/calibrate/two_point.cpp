@@ -68,7 +68,7 @@ double medianNoise(const CellSignal& signal, const CellSamples& samples) {
 double medianDegrees(const AngleUncertainty& angle, const CellSamples& samples) {
     std::vector<double> degrees;
     for (std::size_t cell = 0; cell < samples.size(); ++cell) {
-        if (samples.present(cell)) degrees.push_back(angle(CellGrid::centre(cell)).degrees());
+        if (samples.present(cell)) degrees.push_back(angle(cell).degrees());
     }
     return degrees.empty() ? 0 : median(std::move(degrees));
 }
@@ -98,31 +98,33 @@ void addSizes(Budget& budget,
     budget[LedDrift].size = rig.ledDrift;
 }
 
+/// What the tiles' certificates say at a cell, 1/sr.
+struct Certified {
+    double fWhite = 0, fBlack = 0, uBlack = 0;
+};
+
 /// All that f of a state is made of.
 struct Measurement {
     const CellSignal& sample;
     const References& references;
-    const Direction& wi;
-    Band band;
     const RigUncertainty& rig;
+    const std::vector<Certified>& certified;  // of each cell
 
     /// Of a cell that is present in `samples`, where f and u_random are known.
     [[nodiscard]] CellInputs inputsOf(std::size_t cell, const CellSamples& samples) const {
-        const LightView pair{.in = wi, .out = CellGrid::centre(cell)};
         const Certificate& white = references.white.certificate();
-        const Answer black = references.black.answer(pair);
         return {.sample = sample.signal[cell],
                 .white = references.whiteSignal.signal[cell],
                 .black = references.blackSignal.signal[cell],
                 .sampleVariance = sample.variance[cell],
                 .whiteVariance = references.whiteSignal.variance[cell],
                 .blackVariance = references.blackSignal.variance[cell],
-                .fWhite = references.white.answer(pair).f[band],
-                .fBlack = black.f[band],
+                .fWhite = certified[cell].fWhite,
+                .fBlack = certified[cell].fBlack,
                 .uWhite = std::hypot(white.uCommon, white.uPerDirection),
-                .uBlack = (*black.uSystematic)[band],
+                .uBlack = certified[cell].uBlack,
                 .uLight = std::hypot(rig.ledDrift, rig.exposureRatio, rig.linearity),
-                .uAngle = rig.angle(pair.out).value(),
+                .uAngle = rig.angle(cell).value(),
                 .uElse = 0,
                 .shape = localShape(samples, cell)};
     }
@@ -158,6 +160,7 @@ Calibrated calibrate(const CellSignal& sample,
     Calibrated result{.samples = CellSamples::missing(sample.size()), .budget = {}};
     CellSamples& out = result.samples;
     std::vector<Contributions> contributions(sample.size());
+    std::vector<Certified> certified(sample.size());
 
     parallelFor(sample.size(), [&](IndexRange cells) {
         for (std::size_t cell = cells.begin; cell < cells.end; ++cell) {
@@ -175,8 +178,10 @@ Calibrated calibrate(const CellSignal& sample,
                 continue;
             }
 
-            const double fw = certifiedWhite.f[band];
-            const double fb = certifiedBlack.f[band];
+            certified[cell] = {.fWhite = certifiedWhite.f[band],
+                               .fBlack = certifiedBlack.f[band],
+                               .uBlack = (*certifiedBlack.uSystematic)[band]};
+            const auto [fw, fb, uBlack] = certified[cell];
             const double q = (sample.signal[cell] - black.signal[cell]) / contrast;
             const double gain = (fw - fb) / contrast;  // df / dS
             out.f[cell] = fb + (fw - fb) * q;
@@ -189,7 +194,7 @@ Calibrated calibrate(const CellSignal& sample,
             u[LowerNoise] = std::abs(gain * (1 - q)) * std::sqrt(black.variance[cell]);
             u[WhiteCommon] = std::abs(q * fw) * references.white.certificate().uCommon;
             u[WhitePerDirection] = std::abs(q * fw) * references.white.certificate().uPerDirection;
-            u[LowerCommon] = std::abs(1 - q) * (*certifiedBlack.uSystematic)[band];
+            u[LowerCommon] = std::abs(1 - q) * uBlack;
             const double byLight = std::abs(gain) * std::hypot(sample.signal[cell],
                                                                q * white.signal[cell],
                                                                (1 - q) * black.signal[cell]);
@@ -203,7 +208,7 @@ Calibrated calibrate(const CellSignal& sample,
         }
     });
     // The slope needs the neighbours' f and noise.
-    const Measurement measurement{sample, references, wi, band, rig};
+    const Measurement measurement{sample, references, rig, certified};
     std::vector<double> uRandom = out.uRandom;
     std::atomic<std::size_t> propagated = 0;
     parallelFor(sample.size(), [&](IndexRange cells) {

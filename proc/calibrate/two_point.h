@@ -47,8 +47,8 @@ struct References {
     const ReferenceTable& black;
 };
 
-/// Standard uncertainty of the direction of a cell, per axis.
-using AngleUncertainty = std::function<Radians(const Direction&)>;
+/// Standard uncertainty of the direction of a cell of CellGrid, per axis.
+using AngleUncertainty = std::function<Radians(std::size_t cell)>;
 
 /// What the rig adds to the uncertainty by itself.
 struct RigUncertainty {

@@ -18,7 +18,7 @@ constexpr std::uint32_t kNoCell = std::numeric_limits<std::uint32_t>::max();
 struct CellShare {
     std::uint32_t cell = kNoCell;
     std::uint32_t pixel = 0;
-    float area = 0;
+    float area = 0;  ///< of the pixel inside the cell, 0..1
 };
 
 /// The cells that lie under pixels of one picture.
@@ -73,8 +73,7 @@ Binning::Binning(const LensMap& map, const Window& window, Radians field) : wind
     visibleRows_ = std::min(CellGrid::kRows, static_cast<int>(field.degrees() + 1e-9));
     const Size size = window.sent();
     const PixelCells under(map, window);
-    perCosine_.resize(size.pixels());
-    solidAngle_.resize(size.pixels());
+    std::vector<float> perCosine(size.pixels()), solidAngle(size.pixels());
     std::vector<std::vector<CellShare>> rows(static_cast<std::size_t>(size.height));
     const double area = window.binning * window.binning;
     parallelFor(rows.size(), [&](IndexRange range) {
@@ -94,8 +93,8 @@ Binning::Binning(const LensMap& map, const Window& window, Radians field) : wind
                 const SensorPoint middle = under.sensor(x + 0.5, static_cast<double>(y) + 0.5);
                 const auto wo = map.directionAt(middle);
                 if (!wo || !wo->aboveHorizon()) continue;
-                perCosine_[pixel] = static_cast<float>(1 / wo->z());
-                solidAngle_[pixel] = static_cast<float>(area * map.solidAnglePerPixel(middle));
+                perCosine[pixel] = static_cast<float>(1 / wo->z());
+                solidAngle[pixel] = static_cast<float>(area * map.solidAnglePerPixel(middle));
                 const auto id = static_cast<std::uint32_t>(pixel);
                 const std::uint32_t cell = above[i];
                 if (cell != kNoCell && cell == above[i + 1] && cell == below[i] &&
@@ -115,20 +114,20 @@ Binning::Binning(const LensMap& map, const Window& window, Radians field) : wind
     }
     for (std::size_t c = 1; c < firstShare_.size(); ++c) firstShare_[c] += firstShare_[c - 1];
     shares_.resize(firstShare_.back());
+    pixelsIn_.assign(CellGrid::count(), 0);
     std::vector<std::size_t> next(firstShare_.begin(), firstShare_.end() - 1);
     for (const auto& row : rows) {
-        for (const CellShare& share : row) shares_[next[share.cell]++] = {share.pixel, share.area};
+        for (const CellShare& share : row) {
+            shares_[next[share.cell]++] = {.pixel = share.pixel,
+                                           .weight = share.area * perCosine[share.pixel],
+                                           .solidAngle = share.area * solidAngle[share.pixel]};
+            pixelsIn_[share.cell] += double{share.area};
+        }
     }
 }
 
 std::span<const Binning::Share> Binning::sharesOf(std::size_t cell) const {
     return std::span(shares_).subspan(firstShare_[cell], firstShare_[cell + 1] - firstShare_[cell]);
-}
-
-double Binning::pixelsIn(std::size_t cell) const {
-    double sum = 0;
-    for (const Share& share : sharesOf(cell)) sum += share.area;
-    return sum;
 }
 
 CellSignal Binning::bin(const Image<float>& radiance, const Image<float>& variance) const {
@@ -139,6 +138,33 @@ CellSignal Binning::bin(const Image<float>& radiance, const Image<float>& varian
         for (std::size_t cell = cells.begin; cell < cells.end; ++cell) bin(picture, cell, out);
     });
     return out;
+}
+
+Binning::Both Binning::bin(const Image<float>& radiance,
+                           const Image<float>& variance,
+                           const Image<float>& second) const {
+    assert(radiance.size() == window_.sent() && variance.size() == radiance.size() &&
+           second.size() == radiance.size());
+    const Picture picture{.radiance = radiance.pixels(), .variance = variance.pixels()};
+    Both both{.first = CellSignal::missing(CellGrid::count()), .second = {}};
+    both.second = both.first.signal;
+    parallelFor(CellGrid::count(), [&](IndexRange cells) {
+        for (std::size_t cell = cells.begin; cell < cells.end; ++cell) {
+            bin(picture, cell, both.first);
+            if (both.first.present(cell)) both.second[cell] = signalOf(second.pixels(), cell);
+        }
+    });
+    return both;
+}
+
+double Binning::signalOf(std::span<const float> radiance, std::size_t cell) const {
+    double signal = 0, used = 0;
+    for (const Share& share : sharesOf(cell)) {
+        if (!std::isfinite(radiance[share.pixel])) continue;
+        signal += double{share.weight} * double{radiance[share.pixel]};
+        used += double{share.solidAngle};
+    }
+    return signal / used;
 }
 
 void Binning::bin(const Picture& picture, std::size_t cell, CellSignal& out) const {
@@ -154,12 +180,12 @@ void Binning::bin(const Picture& picture, std::size_t cell, CellSignal& out) con
     double weights = 0;
     double squares = 0;
     for (const Share& share : sharesOf(cell)) {
-        const double omega = double{share.area} * solidAngle_[share.pixel];
+        const double omega = share.solidAngle;
         if (!std::isfinite(radiance[share.pixel])) {
             saturated += omega;
             continue;
         }
-        const double weight = double{share.area} * perCosine_[share.pixel];
+        const double weight = share.weight;
         signal += weight * radiance[share.pixel];
         variance += weight * weight * noise[share.pixel];
         used += omega;

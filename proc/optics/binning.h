@@ -46,25 +46,35 @@ public:
         return bin(state.radiance, state.variance);
     }
     [[nodiscard]] CellSignal bin(const Image<float>& radiance, const Image<float>& variance) const;
+    /// The signals of two pictures that are NaN at the same pixels.
+    struct Both {
+        CellSignal first;
+        std::vector<double> second;
+    };
+    [[nodiscard]] Both bin(const Image<float>& radiance,
+                           const Image<float>& variance,
+                           const Image<float>& second) const;
     /// Sensor area inside the cell, in pixels of the window.
-    [[nodiscard]] double pixelsIn(std::size_t cell) const;
+    [[nodiscard]] double pixelsIn(std::size_t cell) const { return pixelsIn_[cell]; }
 
 private:
+    /// What a pixel gives to a cell.
     struct Share {
         std::uint32_t pixel = 0;
-        float area = 0;  // of the pixel inside the cell, 0..1
+        float weight = 0;      // its area inside the cell, 0..1, over cos(theta_o)
+        float solidAngle = 0;  // of that area, steradian
     };
     [[nodiscard]] std::span<const Share> sharesOf(std::size_t cell) const;
     struct Picture {
         std::span<const float> radiance, variance;
     };
     void bin(const Picture& picture, std::size_t cell, CellSignal& out) const;
+    [[nodiscard]] double signalOf(std::span<const float> radiance, std::size_t cell) const;
 
     Window window_;
     std::vector<Share> shares_;            // sorted by cell
     std::vector<std::size_t> firstShare_;  // by cell, and one behind
-    std::vector<float> perCosine_;         // by pixel: 1 / cos(theta_o)
-    std::vector<float> solidAngle_;        // by pixel, steradian
+    std::vector<double> pixelsIn_;         // by cell
     int visibleRows_ = 0;
 };
 

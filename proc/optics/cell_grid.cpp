@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <vector>
 
 namespace gonio::proc {
 namespace {
@@ -54,9 +55,17 @@ CellPlace CellGrid::place(std::size_t cell) {
 }
 
 Direction CellGrid::centre(std::size_t cell) {
-    const CellPlace at = place(cell);
-    return Direction::fromSpherical(Radians::fromDegrees(at.row + 0.5),
-                                    Radians((at.sector + 0.5) * sectorWidth(at.row)));
+    static const std::vector<Direction> centres = [] {
+        std::vector<Direction> all;
+        for (int row = 0; row < kRows; ++row) {
+            for (int sector = 0; sector < sectors(row); ++sector) {
+                all.push_back(Direction::fromSpherical(Radians::fromDegrees(row + 0.5),
+                                                       Radians((sector + 0.5) * sectorWidth(row))));
+            }
+        }
+        return all;
+    }();
+    return centres[cell];
 }
 
 CellBounds CellGrid::bounds(std::size_t cell) {

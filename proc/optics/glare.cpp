@@ -12,7 +12,7 @@ namespace gonio::proc {
 namespace {
 
 constexpr int kPitch = 16;      // pixels between nodes
-constexpr int kIterations = 3;  // leave share()^3 of the glare
+constexpr int kIterations = 2;  // leave share()^2 of the glare
 constexpr double kMatters = 1e-3;
 
 Size nodesOver(Size picture) {
@@ -219,14 +219,13 @@ GlareFilter::Cleaned GlareFilter::clean(const Image<float>& radiance) const {
 }
 
 CellSignal GlareFilter::bin(const MergedState& state, const Binning& binning) const {
-    const CellSignal seen = binning.bin(state);
-    if (spread_.share() <= 0) return seen;
+    if (spread_.share() <= 0) return binning.bin(state);
     const Cleaned cleaned = clean(state.radiance);
-    CellSignal out = binning.bin(cleaned.radiance, state.variance);
+    auto [out, seen] = binning.bin(cleaned.radiance, state.variance, state.radiance);
     const double uRelative = std::hypot(spread_.uRelative, cleaned.filled);
     for (std::size_t cell = 0; cell < out.size(); ++cell) {
         if (!out.present(cell)) continue;
-        const double takenOff = std::abs(seen.signal[cell] - out.signal[cell]);
+        const double takenOff = std::abs(seen[cell] - out.signal[cell]);
         out.uGlare[cell] = uRelative * takenOff;
         if (takenOff > kMatters * std::abs(out.signal[cell])) {
             out.flags[cell].set(Flag::GlareCorrected);

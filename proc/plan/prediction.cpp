@@ -3,9 +3,29 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace gonio::proc {
 namespace {
+
+/// The smallest of the values that `wanted` of the counts do not exceed. Halves what is left of
+/// them until it is one, which sorting all would take ten times as long for.
+double quantile(std::span<Counted> values, double wanted) {
+    while (values.size() > 1) {
+        const std::size_t half = values.size() / 2;
+        std::ranges::nth_element(
+            values, values.begin() + static_cast<std::ptrdiff_t>(half), {}, &Counted::value);
+        double below = 0;
+        for (const Counted& v : values.first(half)) below += v.count;
+        if (below >= wanted) {
+            values = values.first(half);
+        } else {
+            values = values.subspan(half);
+            wanted -= below;
+        }
+    }
+    return values.front().value;
+}
 
 double relative(const PlanCell& cell, double information) {
     if (!(information > 0)) return std::numeric_limits<double>::infinity();
@@ -31,20 +51,11 @@ double cramerRaoUncertainty(const PlanCell& cell, const StateFrames& taken) {
 Spread spreadOf(std::vector<Counted> values) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     if (values.empty()) return {nan, nan, nan};
-    std::sort(values.begin(), values.end(), [](const Counted& a, const Counted& b) {
-        return a.value < b.value;
-    });
     double all = 0;
     for (const Counted& v : values) all += v.count;
-    const auto quantile = [&](double share) {
-        double below = 0;
-        for (const Counted& v : values) {
-            below += v.count;
-            if (below >= share * all) return v.value;
-        }
-        return values.back().value;
-    };
-    return {.worst = values.back().value, .percentile95 = quantile(0.95), .median = quantile(0.5)};
+    const double worst = std::ranges::max_element(values, {}, &Counted::value)->value;
+    const double median = quantile(values, 0.5 * all);
+    return {.worst = worst, .percentile95 = quantile(values, 0.95 * all), .median = median};
 }
 
 void PredictionSum::reserve(std::size_t cells) {

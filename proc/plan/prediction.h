@@ -23,7 +23,7 @@ struct Counted {
     double value = 0;
     int count = 1;
 };
-/// Sorts the values.
+/// Infinite values are the worst.
 [[nodiscard]] Spread spreadOf(std::vector<Counted> values);
 
 /// Gathers cells state by state.

@@ -9,7 +9,7 @@ namespace gonio::proc {
 namespace {
 
 constexpr double kLeastSignificance = 5;
-constexpr double kScaleErrors = 1.96;  // standard uncertainties of the scales: 95 %
+constexpr double kNominalErrors = 1.96;  // standard uncertainties of scales and zeros: 95 %
 
 /// What all frames saw at one pixel: rates in electrons per second at full level.
 struct PixelSamples {
@@ -72,6 +72,11 @@ public:
         return ones;
     }
 
+    /// Of a pixel without light in one frame of a group, as a rate.
+    [[nodiscard]] double noiseOf(std::size_t group) const {
+        return std::sqrt(figures_[group].floorVariance) / figures_[group].tau;
+    }
+
 private:
     [[nodiscard]] std::size_t firstWithDarkOf(std::size_t group) const {
         std::size_t first = 0;
@@ -112,29 +117,34 @@ Eigen::VectorXd pattern(std::size_t frames, std::size_t first, std::size_t last)
 }
 
 /// What makes the frames of whole groups brighter than they say, without any change of the light.
-class ScaleErrors {
+class NominalErrors {
 public:
-    ScaleErrors(const BracketSums& sums,
-                const Witnesses& witnesses,
-                const NominalUncertainty& nominal) {
-        for (std::size_t g = 0; g < sums.groups.size(); ++g)
-            errors_.push_back(nominal.of(sums.groups[g]) * witnesses.framesOf(g));
+    NominalErrors(const BracketSums& sums,
+                  const Witnesses& witnesses,
+                  const NominalUncertainty& nominal) {
+        for (std::size_t g = 0; g < sums.groups.size(); ++g) {
+            const Eigen::VectorXd frames = witnesses.framesOf(g);
+            scales_.emplace_back(nominal.of(sums.groups[g]) * frames);
+            zeros_.emplace_back(nominal.zero * witnesses.noiseOf(g) * frames);
+        }
     }
     /// The standard deviation of what they show along a pattern.
     [[nodiscard]] double along(const ScaleSystem& system, const Eigen::VectorXd& pattern) const {
         double squares = 0;
-        for (const Eigen::VectorXd& error : errors_)
-            squares += std::pow(system.seenAlong(pattern, error), 2);
+        for (const Eigen::VectorXd& scale : scales_)
+            squares += std::pow(system.seenAlong(pattern, scale), 2);
+        for (const Eigen::VectorXd& zero : zeros_)
+            squares += std::pow(system.addedAlong(pattern, zero), 2);
         return std::sqrt(squares);
     }
 
 private:
-    std::vector<Eigen::VectorXd> errors_;  // of each group: its u, in its frames
+    std::vector<Eigen::VectorXd> scales_, zeros_;  // of each group: its u, in its frames
 };
 
 /// The most significant step or single frame that is worth a report.
 std::optional<LightChange> changeIn(const ScaleSystem& system,
-                                    const ScaleErrors& scales,
+                                    const NominalErrors& errors,
                                     std::size_t frames,
                                     double smallest) {
     std::optional<LightChange> best;
@@ -145,9 +155,9 @@ std::optional<LightChange> changeIn(const ScaleSystem& system,
         const double significance = std::abs(offset->significance());
         const double toBeat = best ? std::abs(best->offset.significance()) : kLeastSignificance;
         if (significance <= toBeat) return;
-        const double uScale = scales.along(system, ones);
-        if (std::abs(offset->size) < kScaleErrors * uScale) return;
-        best = {.first = first, .last = last, .offset = *offset, .uScale = uScale};
+        const double uNominal = errors.along(system, ones);
+        if (std::abs(offset->size) < kNominalErrors * uNominal) return;
+        best = {.first = first, .last = last, .offset = *offset, .uNominal = uNominal};
     };
     for (std::size_t first = 1; first < frames; ++first) consider(first, frames - 1);
     // The first and the last one alone are steps as well.

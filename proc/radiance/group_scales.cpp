@@ -25,17 +25,13 @@ std::vector<std::size_t> byTau(const BracketSums& sums) {
 /// All groups at once, and each pair of neighbours.
 struct Systems {
     explicit Systems(std::size_t groups)
-        : all(groups),
-          pairs(std::max<std::size_t>(groups, 1) - 1, ScaleSystem(2)),
-          rate(groups),
-          weight(groups) {}
+        : all(groups), pairs(std::max<std::size_t>(groups, 1) - 1, ScaleSystem(2)) {}
     void operator+=(const Systems& other) {
         all += other.all;
         for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i] += other.pairs[i];
     }
     ScaleSystem all;
     std::vector<ScaleSystem> pairs;
-    std::vector<double> rate, weight;  ///< of the pixel at hand, by group
 };
 
 class Comparison {
@@ -45,45 +41,37 @@ public:
         for (const GroupSums& group : sums.groups) figures_.push_back(figuresOf(group, sums));
     }
 
+    /// None at the edge of the picture, where a pixel's surroundings are not known.
     [[nodiscard]] Systems row(int y) const {
         Systems systems(figures_.size());
-        std::vector<GroupBlock> groups(figures_.size());
-        for (int x = 0; x < sums_.traits.size.width; x += static_cast<int>(kBlock)) {
-            const BlockAt at{x, y};
-            for (std::size_t g = 0; g < groups.size(); ++g) readGroup(sums_, g, at, groups[g]);
-            for (std::size_t i = 0; i < at.of(state_.radiance).size(); ++i)
-                pixel(groups, at, i, systems);
-        }
+        const Size size = sums_.traits.size;
+        if (y < 1 || y + 1 >= size.height) return systems;
+        std::vector<NodeBlock> nodes(figures_.size());
+        for (int x = 1; x + 1 < size.width; x += static_cast<int>(kBlock))
+            block({x, y}, nodes, systems);
         return systems;
     }
 
     [[nodiscard]] const std::vector<std::size_t>& order() const { return order_; }
 
 private:
-    void pixel(const std::vector<GroupBlock>& groups,
-               const BlockAt& at,
-               std::size_t i,
-               Systems& systems) const {
-        const auto light = lightAround(state_.radiance, at.x + static_cast<int>(i), at.y);
-        if (!light) return;
-        std::vector<double>& rate = systems.rate;
-        std::vector<double>& weight = systems.weight;
-        std::fill(weight.begin(), weight.end(), 0.0);
-        for (std::size_t g = 0; g < groups.size(); ++g) {
-            const GroupFigures& f = figures_[g];
-            const double n = groups[g].count[i];
-            if (groups[g].anyHot && groups[g].excess[i] > 0) return;
-            if (n == 0) continue;
-            const double single = *light * f.tau / sums_.members() + f.floorVariance;
-            weight[g] = f.tau * f.tau / (single / n + f.darkVariance);
-            rate[g] = groups[g].net[i] * sums_.noise.electronsPerDn / (n * f.tau);
+    void block(const BlockAt& at, std::vector<NodeBlock>& nodes, Systems& systems) const {
+        const auto around = [&](int y) {
+            return state_.radiance.row(y).subspan(static_cast<std::size_t>(at.x) - 1);
+        };
+        BlockOfPixels light;
+        findLight(around(at.y - 1), around(at.y), around(at.y + 1), light);
+        GroupBlock group;
+        std::vector<const NodeBlock*> all;
+        for (std::size_t g = 0; g < nodes.size(); ++g) {
+            readGroup(sums_, g, at, group);
+            const double k = sums_.noise.electronsPerDn;
+            asNode(group, figures_[g], k, sums_.members(), light, nodes[g]);
+            all.push_back(&nodes[g]);
         }
-        systems.all.add(*light, rate, weight);
-        for (std::size_t pair = 0; pair < systems.pairs.size(); ++pair) {
-            const std::size_t from = order_[pair], to = order_[pair + 1];
-            systems.pairs[pair].add(
-                *light, std::array{rate[from], rate[to]}, std::array{weight[from], weight[to]});
-        }
+        systems.all.add(light, all);
+        for (std::size_t pair = 0; pair < systems.pairs.size(); ++pair)
+            systems.pairs[pair].add(light, std::array{all[order_[pair]], all[order_[pair + 1]]});
     }
 
     const BracketSums& sums_;

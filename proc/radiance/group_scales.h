@@ -23,6 +23,10 @@ struct NominalUncertainty {
     Seconds exposure{0.5e-6};  ///< of each exposure
     double relative = 1e-4;    ///< of any tau
     double dimmed = 0.02;      ///< of a level below full
+    /// Of the mean of a picture less its dark frame, in units of a pixel's noise without light: the
+    /// sensor's zero wanders, and the columns of a frame are off by some tenths of an electron each.
+    /// In a picture of next to no light nothing else is to be seen.
+    double zero = 0.05;
 
     /// Of a group's tau, relative.
     [[nodiscard]] double of(const GroupSums& group) const;

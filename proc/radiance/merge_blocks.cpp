@@ -8,21 +8,6 @@ namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-/// Sum of a block in eight strands, which an addition of doubles would otherwise serialise.
-double total(const BlockOfPixels& of) {
-    constexpr std::size_t kStrands = 8;
-    std::array<double, kStrands> sums{};
-    for (std::size_t x = 0; x < kBlock; x += kStrands)
-        for (std::size_t i = 0; i < kStrands; ++i) sums[i] += of[x + i];
-    double sum = 0;
-    for (const double strand : sums) sum += strand;
-    return sum;
-}
-
-/// Added to a divisor, so that 0 / 0 is 0 without a choice: the compiler would compute both sides
-/// of it. Lost in any other divisor here; its inverse is a float.
-constexpr double kTiny = 1e-37;
-
 /// At most 255.
 std::uint8_t capped(double count) {
     return static_cast<std::uint8_t>(static_cast<int>(std::min(count, 255.0)));

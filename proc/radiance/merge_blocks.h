@@ -11,13 +11,28 @@
 
 namespace gonio::proc {
 
-inline constexpr std::size_t kBlock = 128;
+inline constexpr std::size_t kBlock = 64;
 using BlockOfPixels = std::array<double, kBlock>;
 
 // A tally: how many samples in its upper 10 bits, the sum of their DN in its lower 22.
 inline constexpr std::uint32_t kSumBits = 22;
 inline constexpr std::uint32_t kLargestSum = (1U << kSumBits) - 1;
 inline constexpr std::uint32_t kMostAlike = (1U << (32 - kSumBits)) - 1;
+
+/// Added to a divisor, so that 0 / 0 is 0 without a choice: the compiler would compute both sides
+/// of it. Lost in any other divisor here; its inverse is a float.
+inline constexpr double kTiny = 1e-37;
+
+/// Sum of a block in eight strands, which an addition of doubles would otherwise serialise.
+[[nodiscard]] inline double total(const BlockOfPixels& of) {
+    constexpr std::size_t kStrands = 8;
+    std::array<double, kStrands> sums{};
+    for (std::size_t x = 0; x < kBlock; x += kStrands)
+        for (std::size_t i = 0; i < kStrands; ++i) sums[i] += of[x + i];
+    double sum = 0;
+    for (const double strand : sums) sum += strand;
+    return sum;
+}
 
 /// Adds the samples of a row whose `usable` is 1 to the tallies.
 void addUsable(std::span<const std::uint16_t> row,

@@ -14,6 +14,7 @@ Eigen::Index signedIndex(std::size_t i) { return static_cast<Eigen::Index>(i); }
 ScaleSystem::ScaleSystem(std::size_t nodes)
     : h_(Eigen::MatrixXd::Zero(signedIndex(nodes), signedIndex(nodes))),
       g_(h_),
+      a_(h_),
       b_(Eigen::VectorXd::Zero(signedIndex(nodes))) {}
 
 void ScaleSystem::add(double light, std::span<const double> rate, std::span<const double> weight) {
@@ -33,6 +34,7 @@ void ScaleSystem::add(double light, std::span<const double> rate, std::span<cons
             const double p = (i == j ? weight[i] : 0) - weight[i] * weight[j] / sum;
             h_(signedIndex(i), signedIndex(j)) += light * mean * p;
             g_(signedIndex(i), signedIndex(j)) += light * light * p;
+            a_(signedIndex(i), signedIndex(j)) += light * p;
         }
     }
 }
@@ -57,6 +59,20 @@ void ScaleSystem::add(double light, std::span<const double> rate, const SharedWe
             const double p = w - weights.inMean(i) * weights.inMean(j) / sum;
             h_(signedIndex(i), signedIndex(j)) += light * mean * p;
             g_(signedIndex(i), signedIndex(j)) += light * light * p;
+            a_(signedIndex(i), signedIndex(j)) += light * p;
+        }
+    }
+}
+
+void ScaleSystem::add(const BlockOfPixels& light, std::span<const NodeBlock* const> nodes) {
+    const SharedBlock block = shared(light, nodes);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        b_(signedIndex(i)) += pullOf(block, *nodes[i]);
+        for (std::size_t j = 0; j <= i; ++j) {
+            const PairSums sums = pairSums(block, *nodes[i], *nodes[j]);
+            h_(signedIndex(i), signedIndex(j)) += sums.h;
+            g_(signedIndex(i), signedIndex(j)) += sums.g;
+            a_(signedIndex(i), signedIndex(j)) += sums.a;
         }
     }
 }
@@ -64,6 +80,7 @@ void ScaleSystem::add(double light, std::span<const double> rate, const SharedWe
 ScaleSystem& ScaleSystem::operator+=(const ScaleSystem& other) {
     h_ += other.h_;
     g_ += other.g_;
+    a_ += other.a_;
     b_ += other.b_;
     return *this;
 }
@@ -78,6 +95,11 @@ std::optional<BrightnessOffset> ScaleSystem::along(const Eigen::VectorXd& patter
 double ScaleSystem::seenAlong(const Eigen::VectorXd& pattern, const Eigen::VectorXd& off) const {
     const Eigen::VectorXd row = h_.selfadjointView<Eigen::Lower>() * pattern;
     return row.dot(off) / row.dot(pattern);
+}
+
+double ScaleSystem::addedAlong(const Eigen::VectorXd& pattern, const Eigen::VectorXd& added) const {
+    const double information = pattern.dot(h_.selfadjointView<Eigen::Lower>() * pattern);
+    return pattern.dot(a_.selfadjointView<Eigen::Lower>() * added) / information;
 }
 
 std::vector<BrightnessOffset> ScaleSystem::solve(std::span<const double> uNominal) const {

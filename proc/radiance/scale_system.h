@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "proc/core/image.h"
+#include "proc/radiance/scale_blocks.h"
 #include "proc/radiance/shared_noise.h"
 
 namespace gonio::proc {
@@ -39,6 +40,8 @@ public:
     /// the node has none. A pixel that less than two nodes see says nothing.
     void add(double light, std::span<const double> rate, std::span<const double> weight);
     void add(double light, std::span<const double> rate, const SharedWeights& weights);
+    /// A block of them, one node for each of the system's. Its slow twin is the first `add`.
+    void add(const BlockOfPixels& light, std::span<const NodeBlock* const> nodes);
     ScaleSystem& operator+=(const ScaleSystem& other);
 
     /// The factor s of d = s pattern that fits best; a pattern of 1 and 0 asks by how much the ones
@@ -47,12 +50,16 @@ public:
     /// What `along(pattern)` finds where the nodes are brighter by `off`.
     [[nodiscard]] double seenAlong(const Eigen::VectorXd& pattern,
                                    const Eigen::VectorXd& off) const;
+    /// What `along(pattern)` finds where the nodes see `added` at every pixel besides its light.
+    [[nodiscard]] double addedAlong(const Eigen::VectorXd& pattern,
+                                    const Eigen::VectorXd& added) const;
 
     /// All d, where the nominal scale of each node is known to `uNominal` (relative, > 0).
     [[nodiscard]] std::vector<BrightnessOffset> solve(std::span<const double> uNominal) const;
 
 private:
     Eigen::MatrixXd h_, g_;
+    Eigen::MatrixXd a_;  ///< sum_p y_p P_ij: what adds to the rates
     Eigen::VectorXd b_;
 };
 

@@ -6,6 +6,11 @@
 #include "sim/rig_errors.h"
 
 namespace gonio::daemon::test {
+namespace {
+
+constexpr int kDarkFrames = 4;
+
+}  // namespace
 
 Lab::Lab(const std::string& rigErrors,
          const std::string& systematic,
@@ -47,7 +52,7 @@ void Lab::calibrateMirror() {
     lens_ = std::move(*lens);
 }
 
-Lab::Seen Lab::seen(const std::string& what, const BracketPlan& plan) {
+void Lab::place(const std::string& what) {
     sim::Placement placement{.role = sim::Role::Sample, .surface = nullptr, .wedge = {}};
     if (what == "zero") {
         placement.role = sim::Role::Zero;
@@ -60,7 +65,30 @@ Lab::Seen Lab::seen(const std::string& what, const BracketPlan& plan) {
         placement.surface = std::move(*model);
     }
     door_->device().place(std::move(placement));
-    constexpr int kDarkFrames = 4;
+}
+
+Lab::Frames Lab::frames(const std::string& what, const BracketPlan& plan) {
+    place(what);
+    EXPECT_TRUE(configureWindow(*rig_));
+    Sequencer sequencer(*rig_, profile_, nextPlanStep_);
+    Frames frames;
+    auto darks = sequencer.darks(kDarkFrames, [] { return Result<void>(); });
+    EXPECT_TRUE(darks) << darks.error().message;
+    frames.darks = std::move(*darks);
+    for (const State state : sequencer.states()) {
+        Bracket& bracket = frames.brackets.emplace_back();
+        bracket.state = state;
+        const auto taken = sequencer.bracket(state, plan, [&](const Frame& frame) -> Result<void> {
+            bracket.frames.push_back(frame);
+            return {};
+        });
+        EXPECT_TRUE(taken) << taken.error().message;
+    }
+    return frames;
+}
+
+Lab::Seen Lab::seen(const std::string& what, const BracketPlan& plan) {
+    place(what);
     Bench here = bench();
     here.glare = lens_->glare;
     auto captured = measurePlacement(here, lens_->fit.map, plan, kDarkFrames);

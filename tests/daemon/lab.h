@@ -50,11 +50,24 @@ public:
                                              Glare glare = Glare::TakenOff) const;
     [[nodiscard]] RigReferences references(Lower lower, Glare glare = Glare::TakenOff) const;
 
+    /// The frames of a sample, state by state, before anything is made of them.
+    struct Bracket {
+        State state;
+        std::vector<Frame> frames;
+    };
+    struct Frames {
+        proc::DarkLibrary darks;
+        std::vector<Bracket> brackets;
+    };
+    [[nodiscard]] Frames frames(const std::string& what, const BracketPlan& plan);
+
+    [[nodiscard]] const RigProfile& profile() const { return profile_; }
     [[nodiscard]] const std::optional<LensRecord>& lens() const { return lens_; }
     [[nodiscard]] std::vector<Radians> ledAngles() const { return rig_->identify().ledAngles; }
 
 private:
     [[nodiscard]] Bench bench();
+    void place(const std::string& what);
     /// By Glare.
     using BothWays = std::array<ReferenceRecord, 2>;
     [[nodiscard]] BothWays reference(const std::string& what, const BracketPlan& plan);

@@ -135,7 +135,7 @@ TEST(FrameResiduals, AStepWithinAGroupIsNoErrorOfItsScale) {
         reportOf(shots, {96, 96}, random, [](std::size_t i) { return i >= 4 ? 1.03 : 1; });
     ASSERT_TRUE(report.change);
     EXPECT_EQ(report.change->first, 4U);
-    EXPECT_GT(report.change->offset.size, 2 * report.change->uScale);
+    EXPECT_GT(report.change->offset.size, 2 * report.change->uNominal);
 }
 
 TEST(FrameResiduals, TheNoiseOfADarkFrameIsNoStep) {
@@ -173,6 +173,30 @@ TEST(FrameResiduals, TheNoiseOfADarkFrameIsNoStep) {
     // The light of a pixel is its own, and none below 0: 6 % too much shot noise is thought of
     // here.
     EXPECT_NEAR(chiSquare / freedom, 1, 0.08);
+}
+
+TEST(FrameResiduals, AWanderingZeroIsNoStep) {
+    // The first frame sees an electron of light in each pixel, and 0.15 that are none.
+    std::vector<Shot> shots{{.seconds = 20e-6, .level = 1640}};
+    for (const double seconds : {20e-6, 320e-6, 2e-3}) shots.push_back({.seconds = seconds});
+    const Size size{256, 256};
+    const DarkLibrary darks = perfectDarks(shots, size);
+    const Image<double> light(size, 2e6);
+    const auto reportWith = [&](const NominalUncertainty& nominal) {
+        std::mt19937_64 random(39);
+        MergeAccumulator accumulator(Band::G, darks, {});
+        for (std::size_t i = 0; i < shots.size(); ++i) {
+            Image<double> seen = light;
+            if (i == 0)
+                for (double& pixel : seen.pixels()) pixel += 0.3e6;
+            EXPECT_TRUE(accumulator.add(test::takeScene(seen, shots[i], random)));
+        }
+        const auto state = mergeSums(accumulator.sums());
+        EXPECT_TRUE(state);
+        return frameResiduals(accumulator.sums(), *state, 0.03, nominal);
+    };
+    EXPECT_FALSE(reportWith({}).change);
+    EXPECT_TRUE(reportWith({.zero = 0}).change);
 }
 
 TEST(FrameResiduals, OneFrameSaysNothing) {

@@ -75,6 +75,44 @@ TEST(ScaleSystem, WithoutPixelsInCommonNothingIsKnown) {
     EXPECT_FALSE(threeNodes({1.1, 1.1, 1.1}, random).along(Eigen::Vector3d{0, 0, 0}));
 }
 
+TEST(ScaleSystem, ABlockSaysWhatItsPixelsSay) {
+    std::mt19937_64 random(6);
+    std::uniform_real_distribution<double> some(0.5, 2);
+    ScaleSystem blocks(3), pixels(3);
+    for (int block = 0; block < 20; ++block) {
+        BlockOfPixels light{};
+        std::array<NodeBlock, 3> nodes;
+        for (std::size_t x = 0; x < kBlock; ++x) {
+            light[x] = x % 7 == 0 ? 0 : some(random);
+            std::array<double, 3> rate{}, weight{};
+            for (std::size_t i = x % 5 == 0 ? 2 : x % 3 == 0 ? 1 : 0; i < 3; ++i) {
+                rate[i] = light[x] * (i == 2 ? 1.02 : 1) + 0.1 * (some(random) - 1);
+                weight[i] = some(random);
+                nodes[i].rate[x] = rate[i];
+                nodes[i].weight[x] = weight[i];
+            }
+            pixels.add(light[x], rate, weight);
+        }
+        blocks.add(light, std::array<const NodeBlock*, 3>{&nodes[0], &nodes[1], &nodes[2]});
+    }
+    for (const Eigen::Vector3d& pattern : {Eigen::Vector3d{0, 0, 1}, Eigen::Vector3d{0, 1, 1}}) {
+        const auto fast = blocks.along(pattern), slow = pixels.along(pattern);
+        ASSERT_TRUE(fast && slow);
+        EXPECT_NEAR(fast->size, slow->size, 1e-12);
+        EXPECT_NEAR(fast->u, slow->u, 1e-12);
+        const Eigen::Vector3d added{0.3, 0, -0.1};
+        EXPECT_NEAR(blocks.addedAlong(pattern, added), pixels.addedAlong(pattern, added), 1e-12);
+    }
+}
+
+TEST(ScaleSystem, WhatIsAddedToOneNodeIsSeenAsBrightness) {
+    std::mt19937_64 random(7);
+    const ScaleSystem system = threeNodes({1, 1, 1}, random);
+    // 0.01 more at lights of 1 and 4, weighted by their squares: 0.01 (1 + 4) / (1 + 16).
+    const Eigen::Vector3d third{0, 0, 1};
+    EXPECT_NEAR(system.addedAlong(third, 0.01 * third), 0.01 * 5 / 17, 3e-4);
+}
+
 TEST(ScaleSystem, LightAroundIsTheNeighboursMean) {
     Image<float> picture({4, 3}, 2);
     picture.at(1, 1) = 100;

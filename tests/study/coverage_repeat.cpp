@@ -95,7 +95,7 @@ CoverageStudy::Truths CoverageStudy::truthOf(const Scatterer& surface, int led) 
 std::vector<Verdict> CoverageStudy::repeat(std::uint64_t seed) const {
     const Draw draw(seed);
     const proc::LensFit lens = rig_.lensMap(draw);
-    const proc::AngleUncertainty uAngle = proc::DirectionUncertainty(lens);
+    const proc::DirectionUncertainty uAngle(lens);
     const proc::Binning binning(lens.map, rig_.window(), kField);
     const proc::DarkLibrary darks = rig_.darks(draw);
     std::uint64_t capture = 0;
@@ -125,8 +125,8 @@ std::vector<Verdict> CoverageStudy::repeat(std::uint64_t seed) const {
             proc::SampleSet set;
             for (std::size_t i = 0; i < kLeds.size(); ++i) {
                 const Direction wi = sim::ledDirection(kLeds[i]);
-                const proc::AngleUncertainty ofLed = [&](const Direction& wo) {
-                    return uOf(i, wo);
+                const proc::AngleUncertainty ofLed = [&](std::size_t cell) {
+                    return uOf(i, proc::CellGrid::centre(cell));
                 };
                 proc::LedTable table{.incidence = wi.theta(), .bands = {}};
                 table.bands[index(kBand)] = proc::calibrate(signals[i],
