@@ -62,7 +62,8 @@ Result<Processed> Processing::operator()(State state,
     const Stopwatch processing(clock);
     Result<proc::MergedState> merged = proc::mergeSums(sums.sums());
     if (!merged) return merged.error();
-    const std::optional<LightStep> step = lightStep(state, sums.sums(), *merged);
+    const std::optional<LightStep> step =
+        lightStep(state, sums.sums(), *merged, profile.quality.lightStep);
     const proc::ScaleReport scales = proc::groupScales(sums.sums(), *merged, nominalOf(profile));
     const bool correct = !step && worthCorrecting(scales);
     if (correct) {

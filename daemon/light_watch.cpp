@@ -8,8 +8,6 @@
 namespace gonio::daemon {
 namespace {
 
-constexpr double kSmallest = 0.03;
-
 std::string described(const LightStep& step) {
     const proc::LightChange& change = step.change;
     const bool one = change.first == change.last;
@@ -27,8 +25,9 @@ std::string described(const LightStep& step) {
 
 std::optional<LightStep> lightStep(State state,
                                    const proc::BracketSums& sums,
-                                   const proc::MergedState& merged) {
-    const proc::FrameReport report = proc::frameResiduals(sums, merged, kSmallest);
+                                   const proc::MergedState& merged,
+                                   double smallest) {
+    const proc::FrameReport report = proc::frameResiduals(sums, merged, smallest);
     if (!report.change) return std::nullopt;
     return LightStep{.state = state, .change = *report.change, .frames = report.frames.size()};
 }
@@ -39,7 +38,7 @@ std::string described(std::span<const LightStep> steps) {
     return text;
 }
 
-proc::Verdict lightVerdict(std::span<const LightStep> steps) {
+proc::Verdict lightVerdict(std::span<const LightStep> steps, double smallest) {
     proc::Verdict verdict{.name = "light",
                           .grade = proc::Grade::Ok,
                           .figure = {},
@@ -50,7 +49,7 @@ proc::Verdict lightVerdict(std::span<const LightStep> steps) {
     const LightStep& largest = *std::ranges::max_element(steps, {}, sizeOf);
     verdict.grade = proc::Grade::Refused;
     verdict.figure = proc::Figure{
-        .value = sizeOf(largest), .u = largest.change.offset.u, .unit = "1", .limit = kSmallest};
+        .value = sizeOf(largest), .u = largest.change.offset.u, .unit = "1", .limit = smallest};
     verdict.evidence = "the light changed: " + described(steps);
     verdict.next = "measure again";
     return verdict;

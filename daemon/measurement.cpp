@@ -309,7 +309,8 @@ proc::SampleSet calibrateSample(const PlacementSignals& signals,
     proc::SampleSet set = asIfFlat(signals, ledAngles, references, ofMap, monteCarlo);
     const Radians uLens = uAngle(Direction::fromSpherical(kTypicalView, Radians(0)));
     const std::optional<proc::TiltEstimate> tilt = proc::estimateTilt(set, uLens);
-    if (worthCorrecting(tilt)) {
+    const PoseLimits& limits = references.profile.quality.pose;
+    if (worthCorrecting(tilt, limits)) {
         const proc::SeenDirection seen(lens, ledAngles, *tilt);
         std::vector<CellAngles> ofLobes;
         for (std::size_t led = 0; led < signals.size(); ++led) {
@@ -321,7 +322,7 @@ proc::SampleSet calibrateSample(const PlacementSignals& signals,
     info.budgetJson = std::move(set.info.budgetJson);
     noteBlackCheck(checkBlack(references, ledAngles), info);
     set.info = std::move(info);
-    proc::SampleSet flat = referredToItsNormal(std::move(set), tilt);
+    proc::SampleSet flat = referredToItsNormal(std::move(set), tilt, limits);
     flat.info.achievedUncertainty = achieved(flat);
     return flat;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/quality_limits.h"
 #include "proc/core/result.h"
 #include "proc/core/units.h"
 #include "proc/radiance/linearity.h"
@@ -36,6 +37,7 @@ struct RigProfile {
     double blackRelativeUncertainty = 0;
     double zeroUncertainty = 1e-5;  ///< of the light trap's f = 0, 1/sr, k = 1
     ValidityLimits validity;
+    JudgingLimits quality;  ///< of the file that quality.limits names
 };
 
 /// Where config/ is: $GONIO_CONFIG, beside the installed program, or the source tree.

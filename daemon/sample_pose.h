@@ -6,18 +6,11 @@
 
 #include <optional>
 
+#include "daemon/quality_limits.h"
 #include "proc/quality/tilt.h"
 #include "proc/table/sample_set.h"
 
 namespace gonio::daemon {
-
-struct PoseLimits {
-    Radians corrected = 0.05_deg;  ///< and three standard uncertainties: smaller ones are let be
-    Radians warned = 1_deg;
-    Radians refused = 5_deg;  ///< the model of a tilt holds no longer
-    Radians wavy = 0.2_deg;   ///< root mean square between the LEDs' normals
-    double matt = 0.5;  ///< alpha: a wider lobe shows its tilt badly, and hardly suffers from it
-};
 
 /// Whether its tilt is sure, and does harm.
 [[nodiscard]] bool worthCorrecting(const std::optional<proc::TiltEstimate>& estimate,

@@ -53,10 +53,12 @@ proc::Verdict ambientOf(const proc::SampleSet& sample,
                         const Captured& captured,
                         const RigReferences& references) {
     const proc::DarkFrame* dark = captured.freshDarks.longest();
-    if (dark == nullptr) return proc::ambientVerdict({}, {});
+    const proc::QualityLimits& limits = references.profile.quality.sample;
+    if (dark == nullptr) return proc::ambientVerdict({}, {}, limits);
     return proc::ambientVerdict(
         proc::ambientLight(*dark, references.lens.fit.map, kField, references.profile.noise),
-        dimmestFieldSignal(sample, references));
+        dimmestFieldSignal(sample, references),
+        limits);
 }
 
 std::optional<proc::RepeatChange> repeatChange(const proc::SampleSet& sample,
@@ -86,23 +88,24 @@ std::optional<proc::BackingDifference> differenceTo(const proc::SampleSet& sampl
 
 }  // namespace
 
-void judgeTable(proc::SampleSet& sample) {
+void judgeTable(proc::SampleSet& sample, const proc::QualityLimits& limits) {
     put(sample,
-        {proc::reciprocityVerdict(sample),
-         proc::energyVerdict(sample),
-         proc::saturationVerdict(sample)});
+        {proc::reciprocityVerdict(sample, limits),
+         proc::energyVerdict(sample, limits),
+         proc::saturationVerdict(sample, limits)});
 }
 
 void judgeCapture(proc::SampleSet& sample,
                   const Captured& captured,
                   const RigReferences& references) {
+    const JudgingLimits& limits = references.profile.quality;
     const auto change = repeatChange(sample, captured.repeat);
     put(sample,
         {framesVerdict(captured.oddFrames),
-         lightVerdict(captured.lightSteps),
+         lightVerdict(captured.lightSteps, limits.lightStep),
          ambientOf(sample, captured, references),
-         proc::softnessVerdict(change),
-         proc::driftVerdict(change)});
+         proc::softnessVerdict(change, limits.sample),
+         proc::driftVerdict(change, limits.sample)});
 }
 
 Result<void> checkOther(const BackingEvidence& evidence) {
@@ -122,9 +125,12 @@ Result<void> checkOther(const BackingEvidence& evidence) {
     return {};
 }
 
-void judgeBacking(proc::SampleSet& sample, const BackingEvidence& evidence) {
+void judgeBacking(proc::SampleSet& sample,
+                  const BackingEvidence& evidence,
+                  const proc::QualityLimits& limits) {
     if (evidence.backing) sample.info.extra[kBacking] = proc::name(*evidence.backing);
-    put(sample, {proc::translucencyVerdict(differenceTo(sample, evidence), evidence.backing)});
+    put(sample,
+        {proc::translucencyVerdict(differenceTo(sample, evidence), evidence.backing, limits)});
 }
 
 Result<void> accepted(const proc::SampleSet& sample, bool force) {

@@ -12,9 +12,9 @@
 namespace gonio::daemon {
 
 /// By its table alone: reciprocity, energy, saturation. What is worked out again is judged again.
-void judgeTable(proc::SampleSet& sample);
+void judgeTable(proc::SampleSet& sample, const proc::QualityLimits& limits = {});
 
-/// How it was captured: frames, light, ambient, softness, drift.
+/// How it was captured: frames, light, ambient, softness, drift; by the limits of the rig profile.
 void judgeCapture(proc::SampleSet& sample,
                   const Captured& captured,
                   const RigReferences& references);
@@ -27,7 +27,9 @@ struct BackingEvidence {
 /// Usage error where `other` does not say that it lay on the other backing than `backing`.
 [[nodiscard]] Result<void> checkOther(const BackingEvidence& evidence);
 /// Translucency; the backing is kept in `info.extra`.
-void judgeBacking(proc::SampleSet& sample, const BackingEvidence& evidence);
+void judgeBacking(proc::SampleSet& sample,
+                  const BackingEvidence& evidence,
+                  const proc::QualityLimits& limits = {});
 
 /// Quality error that names all that was refused and what to do about it, unless `force`; what is
 /// let pass with a warning goes to the log.

@@ -41,7 +41,7 @@ if(TARGET gonio)
     # One place for the program in every build tree: scripts need not know where its sources are.
     set_target_properties(gonio goniod PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
     install(TARGETS gonio goniod COMPONENT program)
-    install(DIRECTORY config/rigs config/references config/demo COMPONENT program
+    install(DIRECTORY config/rigs config/references config/quality config/demo COMPONENT program
         DESTINATION ${CMAKE_INSTALL_DATADIR}/gonio OPTIONAL)
     # For a real rig: who may open it, the daemon as a service, what it is told. Paths in the unit are
     # those of CMAKE_INSTALL_PREFIX at configure time.

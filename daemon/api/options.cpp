@@ -1,50 +1,28 @@
 #include "daemon/api/options.h"
 
-#include <toml++/toml.h>
+#include <utility>
 
-#include <algorithm>
-#include <array>
-
-#include "proc/formats/file_bytes.h"
+#include "daemon/toml_keys.h"
 
 namespace gonio::daemon {
 namespace {
 
-constexpr std::array<std::string_view, 6> kKeys{
-    "schema", "rig", "store", "socket", "socket_mode", "profile"};
 constexpr std::string_view kSchema = "gonio/goniod/1";
 
 }  // namespace
 
 Result<DaemonOptions> readDaemonOptions(const std::filesystem::path& file) {
-    const Result<std::string> text = proc::readFile(file);
-    if (!text) return text.error();
-    toml::table table;
-    try {
-        table = toml::parse(*text);
-    } catch (const toml::parse_error& error) {
-        return Error{ErrorKind::File, file.string() + ": " + std::string(error.description())};
-    }
-    for (const auto& [key, value] : table) {
-        const bool known = std::find(kKeys.begin(), kKeys.end(), key.str()) != kKeys.end();
-        if (known && value.is_string()) continue;
-        return Error{ErrorKind::File,
-                     file.string() + ": key '" + std::string(key.str()) +
-                         (known ? "': wanted a text"
-                                : "': wanted rig, store, socket, socket_mode or profile")};
-    }
-    const auto member = [&](std::string_view key) {
-        return table[key].value<std::string>().value_or("");
-    };
-    if (member("schema") != kSchema) {
-        return Error{ErrorKind::File,
-                     file.string() + ": key 'schema': wanted \"" + std::string(kSchema) + "\""};
-    }
-    return DaemonOptions{.rig = member("rig"),
-                         .store = member("store"),
-                         .socket = member("socket"),
-                         .profile = member("profile"),
-                         .socketMode = member("socket_mode")};
+    Result<TomlKeys> read = TomlKeys::read(file, kSchema);
+    if (!read) return read.error();
+    TomlKeys& keys = *read;
+    DaemonOptions options{.rig = keys.textOr("rig", ""),
+                          .store = keys.textOr("store", ""),
+                          .socket = keys.textOr("socket", ""),
+                          .profile = keys.textOr("profile", ""),
+                          .socketMode = keys.textOr("socket_mode", "")};
+    keys.nothingElse();
+    if (keys.error()) return *keys.error();
+    return options;
 }
 
 DaemonOptions overlaid(DaemonOptions first, const DaemonOptions& second) {

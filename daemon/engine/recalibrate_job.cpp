@@ -148,7 +148,7 @@ Result<std::string> workedOut(const Desk& desk,
                                              referencesOf(*loaded, *certified, profile),
                                              std::move(info),
                                              draws);
-    judgeTable(sample);
+    judgeTable(sample, profile.quality.sample);
     return proc::encodeGonio(sample);
 }
 

@@ -189,8 +189,8 @@ Result<Json> measure(const JobRun& run) {
         const Stopwatch calibrating(run.bench().computer);
         sample = calibrateSample(captured->signals, angles, references, about, drawsOf(about));
         judgeCapture(sample, *captured, references);
-        judgeTable(sample);
-        judgeBacking(sample, *backing);
+        judgeTable(sample, run.profile().quality.sample);
+        judgeBacking(sample, *backing, run.profile().quality.sample);
         sample.info.computeSeconds += calibrating.elapsed().count();
         const Result<void> good = accepted(sample, run.request().force);
         if (good) return keep(run, run.request().name, sample, std::move(captured->raw.states));

@@ -14,7 +14,9 @@ namespace gonio::proc {
     const std::size_t width = std::min(here.size() - 2, kBlock);
     for (std::size_t x = 0; x < width; ++x) {
         const float sum = here[x] + here[x + 2] + above[x + 1] + below[x + 1];
-        light[x] = sum > 0 ? static_cast<double>(sum) / 4 : 0;  // 0 of one that is not a number
+        // Only a comparison for equality is quiet where there is no number.
+        const float known = sum == sum ? sum : 0;  // NOLINT(misc-redundant-expression)
+        light[x] = static_cast<double>(std::max(known, 0.0F)) / 4;
     }
 }
 

@@ -1,0 +1,60 @@
+#include "daemon/quality_limits.h"
+
+#include <string>
+
+#include "daemon/toml_keys.h"
+
+namespace gonio::daemon {
+namespace {
+
+constexpr std::string_view kSchema = "gonio/quality/1";
+
+/// Warned of from `section`.warned on, refused from `section`.refused on.
+void readBoth(TomlKeys& keys, const std::string& section, proc::Limits& limits) {
+    const std::string warned = section + ".warned", refused = section + ".refused";
+    limits.warned = keys.notNegativeOr(warned, limits.warned);
+    limits.refused = keys.notNegativeOr(refused, limits.refused);
+    if (limits.warned > limits.refused) keys.complain(warned, "no more than " + refused);
+}
+
+void readDegrees(TomlKeys& keys, const std::string& key, Radians& angle) {
+    angle = Radians::fromDegrees(keys.positiveOr(key, angle.degrees()));
+}
+
+void readPose(TomlKeys& keys, PoseLimits& pose) {
+    readDegrees(keys, "tilt.corrected_deg", pose.corrected);
+    readDegrees(keys, "tilt.warned_deg", pose.warned);
+    readDegrees(keys, "tilt.refused_deg", pose.refused);
+    readDegrees(keys, "waviness.refused_deg", pose.wavy);
+    constexpr double kModelHolds = 5;
+    if (pose.refused.degrees() > kModelHolds + 1e-9)
+        keys.complain("tilt.refused_deg", "no more than 5: beyond, a tilt is not corrected well");
+    if (pose.warned > pose.refused) keys.complain("tilt.warned_deg", "no more than refused_deg");
+}
+
+}  // namespace
+
+Result<JudgingLimits> readLimits(const std::filesystem::path& file) {
+    Result<TomlKeys> read = TomlKeys::read(file, kSchema);
+    if (!read) return read.error();
+    TomlKeys& keys = *read;
+    JudgingLimits limits;
+    readPose(keys, limits.pose);
+    limits.lightStep = keys.positiveOr("light.refused", limits.lightStep);
+    proc::QualityLimits& sample = limits.sample;
+    readBoth(keys, "ambient", sample.ambient);
+    readBoth(keys, "reciprocity", sample.reciprocity);
+    readBoth(keys, "saturation", sample.saturation);
+    sample.reciprocityChiSquare =
+        keys.positiveOr("reciprocity.chi_square", sample.reciprocityChiSquare);
+    sample.softness = keys.positiveOr("softness.refused", sample.softness);
+    sample.drift = keys.positiveOr("drift.warned", sample.drift);
+    sample.energySure = keys.positiveOr("energy.refused_u", sample.energySure);
+    sample.translucency = keys.positiveOr("translucency.refused", sample.translucency);
+    sample.translucencySure = keys.positiveOr("translucency.refused_u", sample.translucencySure);
+    keys.nothingElse();
+    if (keys.error()) return *keys.error();
+    return limits;
+}
+
+}  // namespace gonio::daemon
