@@ -85,9 +85,9 @@ void Program::addSim() {
                     "black, white, zero, mirror, nothing, a file, model:SPEC or sample:NAME")
         ->required();
     sub->add_option(
-        "--tilt-x", place.tiltXDegrees, "wedge of the mirror or a model: about x, degrees");
+        "--tilt-x", place.tiltXDegrees, "wedge of the mirror or the sample: about x, degrees");
     sub->add_option(
-        "--tilt-y,--tilt", place.tiltYDegrees, "wedge of the mirror or a model: about y, degrees");
+        "--tilt-y,--tilt", place.tiltYDegrees, "wedge of the mirror or the sample: about y, degrees");
     sub->add_option("--seed", place.seed, "seed of the rig's noise, 0 or above (kept)")
         ->check(CLI::NonNegativeNumber);
     sub->add_option(
@@ -101,7 +101,7 @@ void Program::addSim() {
                     "glare=0.002,offset_us,step=0.05@300; all in docs/simulator.md");
     sub->add_option("--waviness",
                     place.wavinessDegrees,
-                    "how far a model:'s normal differs between the LEDs' spots, rms, degrees");
+                    "how far the sample's normal differs between the LEDs' spots, rms, degrees");
     sub->add_option("--translucent",
                     place.translucency,
                     "share of red light that the sample lets through to its backing and back");

@@ -4,6 +4,9 @@
 #include <cmath>
 
 #include "proc/core/number_text.h"
+#include "proc/optics/cell_grid.h"
+#include "sim/light.h"
+#include "sim/pose.h"
 
 namespace gonio::daemon {
 namespace {
@@ -25,13 +28,12 @@ sim::SampleErrors sampleErrorsOf(const PlaceRequest& request) {
 
 /// What can be wrong with this sample, or what can be done to this reference.
 Result<void> checkErrors(const PlaceRequest& request) {
-    const bool model = request.what.starts_with("model:");
     for (const double tilt : {request.tiltXDegrees, request.tiltYDegrees}) {
         if (!(std::abs(tilt) <= kSteepestDegrees)) {
             return refused("a tilt of " + shortest(tilt) + ", wanted -30 to 30 degrees");
         }
-        if (tilt != 0 && request.what != "mirror" && !model) {
-            return refused("only the mirror or a model: can be tilted");
+        if (tilt != 0 && request.what != "mirror" && isReference(request.what)) {
+            return refused("only the mirror or a sample can be tilted");
         }
     }
     if (!(std::abs(request.turnedDegrees) <= 180)) {
@@ -47,13 +49,36 @@ Result<void> checkErrors(const PlaceRequest& request) {
     if (Result<void> good = sim::check(sampleErrorsOf(request)); !good) {
         return good.error().in("sim place");
     }
-    if (request.wavinessDegrees != 0 && !model) return refused("only a model: can be wavy");
-    if ((request.translucency != 0 || request.softness != 0) && isReference(request.what)) {
-        return refused("only a sample can be translucent or soft");
+    const bool flawed =
+        request.wavinessDegrees != 0 || request.translucency != 0 || request.softness != 0;
+    if (flawed && isReference(request.what)) {
+        return refused("only a sample can be wavy, translucent or soft");
     }
     if (!request.rigErrors) return {};
     const auto rig = sim::parseRigErrors(*request.rigErrors, {});
     return rig ? Result<void>() : rig.error().in("sim place");
+}
+
+/// Light on a surface that does not lie flat comes from other directions than the LEDs': a table
+/// must know something of each.
+Result<void> checkLit(const sim::Placement& placement, std::uint64_t seed) {
+    const auto spots = sim::waves(seed, placement.errors.waviness);
+    for (int led = 0; led < sim::kLeds; ++led) {
+        const sim::Pose pose(placement.wedge, spots[static_cast<std::size_t>(led)]);
+        const Direction in = pose.seenFromSurface(sim::ledDirection(led));
+        const auto answers = [&](std::size_t cell) {
+            const Direction out = proc::CellGrid::centre(cell);
+            return placement.surface->answer({.in = in, .out = out}).present();
+        };
+        std::size_t cell = 0;
+        while (cell < proc::CellGrid::count() && !answers(cell)) ++cell;
+        if (cell < proc::CellGrid::count()) continue;
+        return refused(
+            "tilted or wavy, LED " + std::to_string(led) + " is " + fixed(in.theta().degrees(), 2) +
+            " degrees from its normal, of which the file says nothing; place a model: or "
+            "a table that answers there");
+    }
+    return {};
 }
 
 /// What will name the same thing after the store has changed.
@@ -144,6 +169,10 @@ Result<bool> SimPort::place(const PlaceRequest& request) {
     }
     Result<sim::Placement> placement = makePlacement(next, store_);
     if (!placement) return placement.error();
+    const bool flat = next.wedge.flat() && next.sampleErrors.waviness == Radians();
+    if (!flat && placement->role == sim::Role::Sample) {
+        if (Result<void> lit = checkLit(*placement, next.seed); !lit) return lit.error();
+    }
     if (Result<void> kept = writeSimState(store_, next); !kept) return kept.error();
     adopt(std::move(next));
     if (door_ != nullptr && !another) door_->device().place(std::move(*placement));

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <limits>
 
+#include "daemon/profile.h"
 #include "proc/formats/gonio_exr.h"
 #include "tests/support/sample_sets.h"
 #include "tests/support/temp_folder.h"
@@ -38,11 +39,11 @@ TEST(PlaceRequest, NamesAReferenceAModelASampleOrAWholePath) {
     }
 }
 
-TEST(PlaceRequest, OnlyTheMirrorAndModelsAreTiltedUpTo30Degrees) {
+TEST(PlaceRequest, OnlyTheMirrorAndSamplesAreTiltedUpTo30Degrees) {
     EXPECT_TRUE(check(PlaceRequest{.what = "mirror", .tiltXDegrees = 30, .tiltYDegrees = -30}));
     EXPECT_TRUE(check(PlaceRequest{.what = "model:lambert", .tiltXDegrees = 1}));
     EXPECT_FALSE(check(PlaceRequest{.what = "white", .tiltXDegrees = 1}));
-    EXPECT_FALSE(check(PlaceRequest{.what = "/a.bsdf", .tiltYDegrees = 1}));
+    EXPECT_TRUE(check(PlaceRequest{.what = "/a.bsdf", .tiltYDegrees = 1}));
     EXPECT_TRUE(check(PlaceRequest{.what = "white", .tiltXDegrees = -0.0}));
     for (const double tilt : {std::nextafter(30.0, 31.0),
                               std::numeric_limits<double>::infinity(),
@@ -58,9 +59,10 @@ TEST(PlaceRequest, WhatIsWrongWithASampleIsOfASampleAndWithinItsDomain) {
                                    .backing = "white",
                                    .softness = 1,
                                    .ambient = 1}));
-    EXPECT_TRUE(check(PlaceRequest{.what = "/a", .translucency = 0.1, .softness = 0.1}));
+    EXPECT_TRUE(check(
+        PlaceRequest{.what = "/a", .wavinessDegrees = 1, .translucency = 0.1, .softness = 0.1}));
     EXPECT_TRUE(check(PlaceRequest{.what = "nothing", .ambient = 0.1}));
-    for (const PlaceRequest& request : {PlaceRequest{.what = "/a", .wavinessDegrees = 1},
+    for (const PlaceRequest& request : {PlaceRequest{.what = "white", .wavinessDegrees = 1},
                                         PlaceRequest{.what = "model:x", .wavinessDegrees = 11},
                                         PlaceRequest{.what = "white", .translucency = 0.1},
                                         PlaceRequest{.what = "mirror", .softness = 0.1},
@@ -230,6 +232,29 @@ TEST_F(SimPortInStore, SampleOfTheStoreIsPlacedByWhatItHoldsNotByItsName) {
     const auto placed = port->place({.what = "sample:tile"});
     ASSERT_TRUE(placed) << placed.error().message;
     EXPECT_EQ(port->placed(), std::filesystem::absolute(store->sample("tile")->file).string());
+}
+
+TEST_F(SimPortInStore, ATableIsTiltedWhereItAnswers) {
+    const auto port = opened();
+    ASSERT_NE(port, nullptr);
+    const auto table = configDirectory() / "demo" / "AnoBlackEC1onAlum.bsdf";
+    const auto placed = port->place({.what = table.string(), .tiltXDegrees = 2, .tiltYDegrees = 4});
+    EXPECT_TRUE(placed) << placed.error().message;
+    // 60 degrees and 12 more: the table ends at 70.
+    const auto beyond = port->place({.what = table.string(), .tiltYDegrees = -12});
+    ASSERT_FALSE(beyond);
+    EXPECT_EQ(beyond.error().kind, ErrorKind::Usage);
+    EXPECT_NE(beyond.error().message.find("LED 3 is 72.00 degrees"), std::string::npos)
+        << beyond.error().message;
+    // A measured sample answers between the incidences of its LEDs.
+    const auto bytes =
+        proc::encodeGonio(gonio::test::sampleSet([](Radians, const Direction&) { return 0.2; }));
+    ASSERT_TRUE(bytes) << bytes.error().message;
+    const auto file = folder / "flat.gonio";
+    std::ofstream(file, std::ios::binary) << *bytes;
+    EXPECT_TRUE(port->place({.what = file.string()}));
+    EXPECT_TRUE(port->place({.what = file.string(), .tiltYDegrees = 3}));
+    EXPECT_FALSE(port->place({.what = file.string(), .tiltYDegrees = -3}));
 }
 
 TEST_F(SimPortInStore, MirrorGoesUnderAnOpenRigOnly) {
