@@ -220,6 +220,44 @@ TEST(MeasureRun, SameSeedGivesTheSameBytes) {
     EXPECT_EQ(once, measured());
 }
 
+/// A rig with the usual errors, and all that can be calibrated of it: what each says of the rig is
+/// what was wrong with it, and a sample that was measured with all of them is as good, and the same
+/// when it is worked out again.
+TEST(MeasureRun, WithAllThatCanBeCalibratedTheRigIsKnownAndTheSampleGood) {
+    const Bench gonio;
+    gonio({"sim", "place", "mirror", "--rig-errors", "typical"});
+    gonio({"calibrate", "mirror"});
+    gonio({"sim", "place", "white"});
+    const Json sensor = gonio({"calibrate", "sensor"});
+    // 2.6 electrons per DN and 2.4 of read noise; half a per cent of the gain is the bend's.
+    EXPECT_NEAR(sensor["electrons_per_dn"], 2.6, 0.03) << sensor;
+    EXPECT_NEAR(sensor["read_noise_electrons"], 2.4, 0.1) << sensor;
+    const Json leds = gonio({"calibrate", "leds"});
+    EXPECT_EQ(leds["schema"], "gonio/calibrate-leds/1");
+    const Json flat = gonio({"calibrate", "flat"});
+    EXPECT_EQ(flat["schema"], "gonio/calibrate-flat/1");
+    const Json dark = gonio({"calibrate", "dark"});
+    EXPECT_EQ(dark["schema"], "gonio/calibrate-dark/1");
+    gonio({"sim", "place", "black"});
+    gonio({"calibrate", "black"});
+    gonio({"sim", "place", "white"});
+    gonio({"calibrate", "white"});
+
+    gonio({"sim", "place", kSamples[2]});
+    const Json measured = gonio({"measure", "all"});
+    EXPECT_EQ(measured["calibration"], "1+6+7+4+3+2") << "mirror, black, white, flat, leds, sensor";
+    const Json info = gonio({"info", measured["file"]});
+    for (const auto& [name, verdict] : info["qc"].items())
+        EXPECT_NE(verdict["grade"], "refused") << name << ' ' << verdict;
+    expectAccurate(gonio({"sim", "score", measured["file"]})["samples"][0]);
+    EXPECT_TRUE(gonio({"recalibrate", "all"})["identical"]);
+
+    // The certificate says how far directions of the white differ; turned, it shows them.
+    gonio({"sim", "place", "white", "--turned", "90"});
+    const Json turned = gonio({"verify-white", "--turned"});
+    EXPECT_EQ(turned["schema"], "gonio/verify-white/1");
+}
+
 /// Over 20 runs whose systematic errors are stratified, each component of the references takes each
 /// of its 20 quantiles once. A long study: it runs with GONIO_NIGHTLY only, and writes its table to
 /// $GONIO_COVERAGE_TABLE when that is set.
