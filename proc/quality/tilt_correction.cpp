@@ -56,6 +56,15 @@ void forget(CellSamples& cells, std::size_t cell) {
     cells.flags[cell].clear(Flag::Measured);
 }
 
+/// What a cell is missing for: what the cells are that it needs; without any, it is out of sight.
+Flags lostBy(const Answer& needed) {
+    Flags why;
+    for (const Flag flag : {Flag::Saturated, Flag::BelowNoise, Flag::Blocked, Flag::BelowHorizon}) {
+        if (needed.flags.has(flag)) why.set(flag);
+    }
+    return why == Flags{} ? Flags{Flag::Blocked} : why;
+}
+
 /// Of the normal that one LED sees, about either axis: the joint one's, and the waves. Their root
 /// mean square angle is that about both axes together.
 Radians uOfOneLed(const TiltEstimate& estimate) {
@@ -109,7 +118,10 @@ SampleSet tiltCorrected(const SampleSet& sample, const TiltEstimate& estimate) {
         const auto at = seenAt(place.pair, turn);
         const Answer answer = at && at->aboveHorizon() ? smooth.answer({place.pair.in, *at})
                                                        : Answer::none({}, Source::Measured);
-        if (!std::isfinite(answer.f[place.band])) return forget(cells, place.cell);
+        if (!std::isfinite(answer.f[place.band])) {
+            cells.flags[place.cell] = cells.flags[place.cell] | lostBy(answer);
+            return forget(cells, place.cell);
+        }
         const double flat = overCell(place, Direction());
         cells.f[place.cell] = answer.f[place.band] * flat;
         cells.uRandom[place.cell] = (*answer.uRandom)[place.band] * flat;

@@ -7,7 +7,8 @@
 // The quotient is smooth, so that it is interpolated between the cells; at the lobe itself the
 // distribution of facets is the same on both sides and cancels, whatever its real shape.
 //
-// Where a cell that is needed is missing, or wo* is beyond the field, the answer is missing. The
+// Where a cell that is needed is missing, the answer is missing for the same reason; where wo* is
+// beyond the field, it is Blocked. The
 // tilt's uncertainty and the waves, times the slope of the lobe, go into u_systematic, corrected or
 // not: each LED sees a normal of its own.
 
