@@ -3,8 +3,6 @@
 namespace gonio::daemon {
 namespace {
 
-constexpr std::size_t kLedBoard = 0;
-
 void divide(proc::CellSignal& signal, double by) {
     for (std::size_t cell = 0; cell < signal.size(); ++cell) {
         if (!signal.present(cell)) continue;
@@ -28,7 +26,7 @@ std::optional<double> lightOf(const proc::LedMonitor& leds,
                               std::span<const proc::RawExposure> bracket) {
     double sum = 0, frames = 0;
     for (const proc::RawExposure& exposure : bracket) {
-        const std::optional<double>& celsius = exposure.celsius[kLedBoard];
+        const std::optional<double>& celsius = exposure.celsius[Frame::LedBoard];
         if (!celsius || !(exposure.milliamp > 0)) return std::nullopt;
         sum += exposure.frames * leds.light(band, {exposure.level, exposure.milliamp, *celsius});
         frames += exposure.frames;

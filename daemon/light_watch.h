@@ -21,7 +21,8 @@ struct LightStep {
 
 /// `merged` is the merge of the sums. Changes below `smallest` are let be, and what wrong scales
 /// explain: an exposure that lasts longer than granted, or a dimmed level that is off, makes all
-/// frames of a group brighter, and both are in the calibration too.
+/// frames of a group brighter, and both are in the calibration too. So does a zero that wanders, in
+/// a frame of next to no light.
 [[nodiscard]] std::optional<LightStep> lightStep(State state,
                                                  const proc::BracketSums& sums,
                                                  const proc::MergedState& merged,

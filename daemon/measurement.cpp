@@ -165,11 +165,11 @@ std::optional<double> achieved(const proc::SampleSet& set) {
     return median(std::move(relative));
 }
 
-/// Of each cell in the field: standard uncertainty of where it lies, per axis.
+/// Of each cell: standard uncertainty of where it lies, per axis; half a turn beyond the field.
 using CellAngles = std::vector<Radians>;
 
 CellAngles overField(const std::function<Radians(const Direction&)>& uAngle) {
-    CellAngles angles(proc::CellGrid::count());
+    CellAngles angles(proc::CellGrid::count(), Radians(kPi));
     parallelFor(angles.size(), [&](IndexRange cells) {
         for (std::size_t cell = cells.begin; cell < cells.end; ++cell) {
             const Direction wo = proc::CellGrid::centre(cell);

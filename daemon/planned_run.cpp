@@ -42,9 +42,8 @@ proc::DarkLibrary nominalDarks(const std::vector<Frame>& frames, const proc::Sen
 }
 
 double sensorCelsius(const Frame& frame) {
-    constexpr std::size_t kSensor = 1;
     constexpr double kUsual = 25;
-    return frame.celsius[kSensor].value_or(kUsual);
+    return frame.celsius[Frame::Sensor].value_or(kUsual);
 }
 
 }  // namespace

@@ -17,6 +17,21 @@ constexpr Seconds kHour = std::chrono::hours(1), kDay = std::chrono::hours(24);
 constexpr std::string_view kIdealWhite = "1/pi";
 constexpr std::string_view kSchema = "gonio/rig/1";
 
+/// The file but for what has no bearing on a calibration: [quality] and the empty line before it.
+std::string physical(const std::string& text) {
+    std::istringstream lines(text);
+    std::string kept, line;
+    bool left = true;
+    while (std::getline(lines, line)) {
+        if (line.starts_with("[")) {
+            left = !line.starts_with("[quality]");
+            if (!left && kept.ends_with("\n\n")) kept.pop_back();
+        }
+        if (left) kept += line + "\n";
+    }
+    return kept;
+}
+
 std::string hashOf(std::string_view text) {
     const auto* bytes = reinterpret_cast<const std::uint8_t*>(text.data());
     std::ostringstream hex;
@@ -43,7 +58,7 @@ Result<RigProfile> readProfile(const fs::path& file) {
     if (!read) return read.error();
     TomlKeys& keys = *read;
     RigProfile profile;
-    profile.hash = hashOf(keys.bytes());
+    profile.hash = hashOf(physical(keys.bytes()));
     profile.name = keys.text("name");
     profile.cameraUsb = keys.either("camera.usb", 2, 3);
     profile.noise.electronsPerDn = keys.positive("sensor.electrons_per_dn");
@@ -67,6 +82,7 @@ Result<RigProfile> readProfile(const fs::path& file) {
     good.tiles = kHour * keys.positiveOr("validity.tile_hours", good.tiles / kHour);
     good.kelvin = keys.positiveOr("validity.kelvin", good.kelvin);
     const std::string limits = keys.textOr("quality.limits", "");
+    keys.nothingElse();
     if (keys.error()) return *keys.error();
     if (!limits.empty()) {
         Result<JudgingLimits> judging = readLimits(configDirectory() / limits);

@@ -22,7 +22,9 @@ struct ValidityLimits {
 
 struct RigProfile {
     std::string name;
-    std::string hash;   ///< of the file's bytes: eight hexadecimal digits
+    /// Of the file's bytes without [quality], which no calibration depends on: eight hexadecimal
+    /// digits.
+    std::string hash;
     int cameraUsb = 2;  ///< the camera's USB, 2 or 3; a rig tells its own frame period
     proc::SensorNoise noise;
     proc::Linearity response{};            ///< of the sensor; the identity unless it was measured

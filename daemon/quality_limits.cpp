@@ -3,18 +3,23 @@
 #include <string>
 
 #include "daemon/toml_keys.h"
+#include "proc/core/number_text.h"
 
 namespace gonio::daemon {
 namespace {
 
 constexpr std::string_view kSchema = "gonio/quality/1";
+constexpr Radians kSteepest = 5.000001_deg;  // that a tilt is modelled well to
 
 /// Warned of from `section`.warned on, refused from `section`.refused on.
 void readBoth(TomlKeys& keys, const std::string& section, proc::Limits& limits) {
     const std::string warned = section + ".warned", refused = section + ".refused";
     limits.warned = keys.notNegativeOr(warned, limits.warned);
     limits.refused = keys.notNegativeOr(refused, limits.refused);
-    if (limits.warned > limits.refused) keys.complain(warned, "no more than " + refused);
+    if (limits.warned <= limits.refused) return;
+    keys.complain(warned,
+                  "no more than " + refused + ", which is " + shortest(limits.refused) +
+                      ", and it is " + shortest(limits.warned));
 }
 
 void readDegrees(TomlKeys& keys, const std::string& key, Radians& angle) {
@@ -26,10 +31,11 @@ void readPose(TomlKeys& keys, PoseLimits& pose) {
     readDegrees(keys, "tilt.warned_deg", pose.warned);
     readDegrees(keys, "tilt.refused_deg", pose.refused);
     readDegrees(keys, "waviness.refused_deg", pose.wavy);
-    constexpr double kModelHolds = 5;
-    if (pose.refused.degrees() > kModelHolds + 1e-9)
+    if (pose.refused > kSteepest)
         keys.complain("tilt.refused_deg", "no more than 5: beyond, a tilt is not corrected well");
     if (pose.warned > pose.refused) keys.complain("tilt.warned_deg", "no more than refused_deg");
+    if (pose.corrected > pose.refused)
+        keys.complain("tilt.corrected_deg", "no more than refused_deg");
 }
 
 }  // namespace
@@ -39,6 +45,7 @@ Result<JudgingLimits> readLimits(const std::filesystem::path& file) {
     if (!read) return read.error();
     TomlKeys& keys = *read;
     JudgingLimits limits;
+    limits.name = file.stem().string();
     readPose(keys, limits.pose);
     limits.lightStep = keys.positiveOr("light.refused", limits.lightStep);
     proc::QualityLimits& sample = limits.sample;

@@ -2,6 +2,7 @@
 // Where the verdicts on a sample draw their lines, from a file: config/quality/*.toml.
 
 #include <filesystem>
+#include <string>
 
 #include "proc/core/result.h"
 #include "proc/core/units.h"
@@ -21,7 +22,8 @@ struct PoseLimits {
 struct JudgingLimits {
     proc::QualityLimits sample;
     PoseLimits pose;
-    double lightStep = 0.03;  ///< within a bracket, relative (light_watch.h)
+    double lightStep = 0.03;     ///< within a bracket, relative (light_watch.h)
+    std::string name = "usual";  ///< of the file, without its extension
 };
 
 /// Keys that the file leaves out keep their usual limits. Errors name the file and the key; so does

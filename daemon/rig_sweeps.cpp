@@ -16,7 +16,6 @@ constexpr double kFill = 0.85;  // of the range, at the longest exposure
 constexpr int kSide = 128;      // of the even part of the field, pixels
 constexpr Microseconds kFirstLook{80}, kLongest{20'000};
 constexpr double kLeastDn = 40;  // of the first look, above the dark
-constexpr std::size_t kLedBoard = 0, kSensor = 1;
 // Longer than an LED's chip needs to cool, and to warm up.
 constexpr Microseconds kColdExposure{100'000}, kWarmExposure{100'000};
 constexpr int kColdFrames = 60, kWarmFrames = 20, kWarmSteps = 2, kFramesOfEach = 4, kCycles = 4;
@@ -122,7 +121,7 @@ Result<SensorRecord> sensorOf(const std::vector<Frame>& lit,
     return SensorRecord{.transfer = *transfer,
                         .linearity = std::move(*linearity),
                         .sweep = std::move(*sweep),
-                        .celsius = lit.front().celsius[kSensor],
+                        .celsius = lit.front().celsius[Frame::Sensor],
                         .dateUtc = {}};
 }
 
@@ -137,7 +136,7 @@ Result<SensorRecord> takeSensor(const Bench& bench) {
 
 /// One frame of a warm-up, without uncertainty of the dark: it is common to all.
 Result<proc::WarmUpPoint> pointOf(const Frame& frame, Band band, const proc::SensorNoise& noise) {
-    if (!frame.celsius[kLedBoard]) {
+    if (!frame.celsius[Frame::LedBoard]) {
         return Error{ErrorKind::Quality, "the rig tells no temperature of its LED board"};
     }
     const double pixels = static_cast<double>(frame.pixels.size().pixels());
@@ -148,7 +147,7 @@ Result<proc::WarmUpPoint> pointOf(const Frame& frame, Band band, const proc::Sen
         .signal = electrons / seconds,
         .u = std::sqrt(noise.variance(electrons, seconds) / pixels) / seconds,
         .current = (frame.currentMinMilliamp[b] + frame.currentMaxMilliamp[b]) / 2,
-        .celsius = *frame.celsius[kLedBoard]};
+        .celsius = *frame.celsius[Frame::LedBoard]};
 }
 
 /// Of the frames of one capture: what the LED wanders by they share, so that they are one point.

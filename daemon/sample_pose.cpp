@@ -118,6 +118,13 @@ std::string withTilt(const std::string& budgetJson,
     return budget.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
+/// With a line for what its seat may do to it.
+proc::SampleSet widened(const proc::SampleSet& sample, const proc::TiltEstimate& estimate) {
+    proc::SampleSet wider = proc::withTiltUncertainty(sample, estimate);
+    wider.info.budgetJson = withTilt(sample.info.budgetJson, sample, wider);
+    return wider;
+}
+
 }  // namespace
 
 bool worthCorrecting(const std::optional<proc::TiltEstimate>& estimate, const PoseLimits& limits) {
@@ -139,13 +146,11 @@ proc::SampleSet referredToItsNormal(proc::SampleSet sample,
                                     const PoseLimits& limits) {
     if (!estimate || estimate->lobes.front().alpha > limits.matt) {
         putBoth(sample.info, withoutLobe("tilt"), withoutLobe("waviness"));
-        return sample;
+        return widened(sample, proc::seated(sample.leds.size()));
     }
     if (!estimate->determined) {
         putBoth(sample.info, undetermined("tilt", *estimate), undetermined("waviness", *estimate));
-        proc::SampleSet widened = proc::withTiltUncertainty(sample, *estimate);
-        widened.info.budgetJson = withTilt(sample.info.budgetJson, sample, widened);
-        return widened;
+        return widened(sample, *estimate);
     }
     const bool corrected = worthCorrecting(estimate, limits);
     proc::SampleSet flat = corrected ? proc::tiltCorrected(sample, *estimate)

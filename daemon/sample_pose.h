@@ -1,8 +1,8 @@
 #pragma once
 // The check of how a sample lay (proc/quality/tilt.h), and what follows from it: a tilt that is
 // sure and does harm is corrected, any other goes into the uncertainties; where a lobe does not
-// tell its tilt, what samples are seated to does. The verdicts `tilt` and `waviness` stand in the
-// sample's information (proc/quality/verdict.h).
+// tell its tilt, or there is none, what samples are seated to does. The verdicts `tilt` and
+// `waviness` stand in the sample's information (proc/quality/verdict.h).
 
 #include <optional>
 

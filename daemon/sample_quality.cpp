@@ -88,6 +88,10 @@ std::optional<proc::BackingDifference> differenceTo(const proc::SampleSet& sampl
 
 }  // namespace
 
+void noteLimits(const JudgingLimits& limits, proc::SampleInfo& info) {
+    info.extra["quality_limits"] = limits.name;
+}
+
 void judgeTable(proc::SampleSet& sample, const proc::QualityLimits& limits) {
     put(sample,
         {proc::reciprocityVerdict(sample, limits),

@@ -11,8 +11,11 @@
 
 namespace gonio::daemon {
 
+/// A sample says by which limits it was judged.
+void noteLimits(const JudgingLimits& limits, proc::SampleInfo& info);
+
 /// By its table alone: reciprocity, energy, saturation. What is worked out again is judged again.
-void judgeTable(proc::SampleSet& sample, const proc::QualityLimits& limits = {});
+void judgeTable(proc::SampleSet& sample, const proc::QualityLimits& limits);
 
 /// How it was captured: frames, light, ambient, softness, drift; by the limits of the rig profile.
 void judgeCapture(proc::SampleSet& sample,
@@ -29,7 +32,7 @@ struct BackingEvidence {
 /// Translucency; the backing is kept in `info.extra`.
 void judgeBacking(proc::SampleSet& sample,
                   const BackingEvidence& evidence,
-                  const proc::QualityLimits& limits = {});
+                  const proc::QualityLimits& limits);
 
 /// Quality error that names all that was refused and what to do about it, unless `force`; what is
 /// let pass with a warning goes to the log.

@@ -110,7 +110,7 @@ std::string TomlKeys::text(std::string_view key) {
 }
 
 std::string TomlKeys::textOr(std::string_view key, std::string otherwise) {
-    return holds(key) ? text(key) : std::move(otherwise);
+    return holds(key) && table_->value<std::string>(key) != "" ? text(key) : std::move(otherwise);
 }
 
 int TomlKeys::either(std::string_view key, int first, int second) {
@@ -124,13 +124,15 @@ int TomlKeys::either(std::string_view key, int first, int second) {
 std::vector<Microseconds> TomlKeys::wholeMicroseconds(std::string_view key) {
     std::vector<double> values = numbers(key);
     std::sort(values.begin(), values.end());
-    std::vector<Microseconds> exposures;
-    exposures.reserve(values.size());
-    for (const double us : values) exposures.emplace_back(static_cast<std::int64_t>(us));
     const bool whole = std::all_of(values.begin(), values.end(), [](double us) {
         return us >= 1 && us <= kLongestUs && us == std::floor(us);
     });
-    if (!whole || !differ(values)) complain(key, "a list of different whole numbers above 0");
+    std::vector<Microseconds> exposures;
+    if (!whole || !differ(values)) {
+        complain(key, "a list of different whole numbers above 0, an hour at most");
+        return exposures;
+    }
+    for (const double us : values) exposures.emplace_back(static_cast<std::int64_t>(us));
     return exposures;
 }
 
@@ -149,7 +151,8 @@ std::vector<double> TomlKeys::numbers(std::string_view key) {
     const toml::array* const array = table_->keys.at_path(key).as_array();
     if (array != nullptr) {
         for (const toml::node& node : *array) {
-            if (const auto value = node.value<double>()) values.push_back(*value);
+            const auto value = node.value<double>();
+            if (value && std::isfinite(*value)) values.push_back(*value);
         }
     }
     if (array == nullptr || values.empty() || values.size() != array->size()) {

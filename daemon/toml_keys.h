@@ -32,6 +32,7 @@ public:
     [[nodiscard]] double relative(std::string_view key);
     [[nodiscard]] double relativeOr(std::string_view key, double otherwise);
     [[nodiscard]] std::string text(std::string_view key);
+    /// An empty one is none.
     [[nodiscard]] std::string textOr(std::string_view key, std::string otherwise);
     /// One of the two.
     [[nodiscard]] int either(std::string_view key, int first, int second);

@@ -1,7 +1,5 @@
 #include "daemon/api/options.h"
 
-#include <utility>
-
 #include "daemon/toml_keys.h"
 
 namespace gonio::daemon {

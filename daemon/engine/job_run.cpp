@@ -1,5 +1,6 @@
 #include "daemon/engine/job_run.h"
 
+#include "daemon/sample_quality.h"
 #include "proc/core/number_text.h"
 
 namespace gonio::daemon {
@@ -14,9 +15,9 @@ JobRun::JobRun(const JobBench& bench, const JobRequest& request)
     profile_ = measuredProfile(bench.store, bench.profile, now());
 }
 
-Bench JobRun::measuring() const {
+Bench JobRun::measuring(const RigProfile& profile) const {
     return {.rig = bench_.rig,
-            .profile = profile_,
+            .profile = profile,
             .nextPlanStep = bench_.nextPlanStep,
             .clock = bench_.computer,
             .step = [this](const std::string& what) { return bench_.monitor.step(what); },
@@ -29,6 +30,7 @@ proc::SampleInfo JobRun::info(const std::string& name) const {
     info.name = name;
     info.rigSerial = serial_;
     info.profileHash = profile_.hash;
+    noteLimits(profile_.quality, info);
     info.session = bench_.session;
     info.dateUtc = bench_.utcNow();
     info.softwareVersion = "gonio " GONIO_VERSION;

@@ -28,7 +28,9 @@ public:
     [[nodiscard]] const std::vector<Radians>& ledAngles() const { return ledAngles_; }
     [[nodiscard]] Seconds onRig() const { return onRig_.elapsed(); }
 
-    [[nodiscard]] Bench measuring() const;
+    [[nodiscard]] Bench measuring() const { return measuring(profile_); }
+    /// By other figures than the run goes by; borrowed.
+    [[nodiscard]] Bench measuring(const RigProfile& profile) const;
     /// What `work` answers, which takes long; rig and watchdog are fed meanwhile.
     template <class Work>
     auto whileAlive(Work work) const {

@@ -139,6 +139,7 @@ Result<std::string> workedOut(const Desk& desk,
     if (!complete) return complete.error();
     proc::SampleInfo info = before.sample.info;
     info.calibrationId = set.id();
+    noteLimits(profile.quality, info);
     if (monteCarlo > 0) noteDraws(monteCarlo, info);
     const proc::MonteCarlo draws = drawsOf(info);
     info.referenceCertificate = certified->white->certificate().citation;

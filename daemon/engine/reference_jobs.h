@@ -1,6 +1,5 @@
 #pragma once
-// The jobs about what samples are held against: lens map, black, white, light trap, and the check
-// of the white.
+// The jobs that take what samples are held against: lens map, black, white, light trap, flat field.
 
 #include "daemon/engine/job_run.h"
 
@@ -13,7 +12,5 @@ namespace gonio::daemon {
                                                            const std::string& kind);
 /// The flat field, from the white reference.
 [[nodiscard]] Result<nlohmann::ordered_json> calibrateFlat(const JobRun& run);
-/// How far the white is from what it was; turned about its normal, how far from itself.
-[[nodiscard]] Result<nlohmann::ordered_json> verifyWhite(const JobRun& run);
 
 }  // namespace gonio::daemon

@@ -5,6 +5,7 @@
 #include "daemon/rig_records.h"
 #include "daemon/rig_sweeps.h"
 #include "daemon/stored_darks.h"
+#include "proc/core/log.h"
 #include "proc/core/number_text.h"
 #include "proc/quality/ambient.h"
 
@@ -15,21 +16,27 @@ using Json = nlohmann::ordered_json;
 
 /// Keeps it, beside the rig.
 Result<CalibrationRecord> keep(const JobRun& run,
-                               const std::string& kind,
-                               std::optional<double> warmth,
+                               const CalibrationRecord& record,
                                const Result<std::string>& file) {
     if (!file) return file.error();
-    return run.whileAlive(
-        [&] { return run.keep({.kind = kind, .celsius = warmth}, {.file = *file}); });
+    return run.whileAlive([&] { return run.keep(record, {.file = *file}); });
 }
 
 /// Quality error for light that leaks in: it would be taken off every sample.
 Result<void> checkDark(const JobRun& run, const proc::DarkFrame& longest) {
     constexpr double kSure = 5;
     const auto mirror = run.bench().store.newestCalibration(run.serial(), "mirror");
-    if (!mirror || !*mirror) return {};  // nothing tells where the field is
+    if (!mirror || !*mirror) {
+        log::warning(
+            "without a lens map nothing tells where the field is: light that leaks in is "
+            "not looked for");
+        return {};
+    }
     const Result<LensRecord> lens = readLens(**mirror);
-    if (!lens) return {};
+    if (!lens) {
+        log::warning(lens.error().message + "; light that leaks in is not looked for");
+        return {};
+    }
     const auto light = proc::ambientLight(longest, lens->fit.map, kField, run.profile().noise);
     if (!light || light->perSecond < kSure * light->u) return {};
     return Error{ErrorKind::Quality,
@@ -49,27 +56,18 @@ Json documentOf(const JobRun& run, const CalibrationRecord& kept) {
 
 Result<Json> calibrateSensor(const JobRun& run) {
     if (Result<void> placed = run.expectPlaced("white"); !placed) return placed.error();
-    const Bench bench = run.measuring();
     const RigProfile& plain = run.bench().profile;  // not with what is to be found again
-    const Bench onPlain{.rig = bench.rig,
-                        .profile = plain,
-                        .nextPlanStep = bench.nextPlanStep,
-                        .clock = bench.clock,
-                        .step = bench.step,
-                        .alive = bench.alive};
     run.bench().monitor.begin(sensorSteps());
-    Result<SensorRecord> sensor = measureSensor(onPlain);
+    Result<SensorRecord> sensor = measureSensor(run.measuring(plain));
     if (!sensor) return sensor.error();
     run.bench().monitor.captured();
     sensor->dateUtc = run.bench().utcNow();
-    const std::optional<double> warmth = run.celsius();
-    const auto kept = run.whileAlive([&] {
-        return run.keep({.kind = "sensor",
-                         .dateUtc = sensor->dateUtc,
-                         .profileHash = plain.hash,
-                         .celsius = warmth},
-                        {.file = encodeSensor(*sensor)});
-    });
+    const auto kept = keep(run,
+                           {.kind = "sensor",
+                            .dateUtc = sensor->dateUtc,
+                            .profileHash = plain.hash,
+                            .celsius = run.celsius()},
+                           encodeSensor(*sensor));
     if (!kept) return kept.error();
     Json document = documentOf(run, *kept);
     document["electrons_per_dn"] = sensor->transfer.electronsPerDn;
@@ -88,7 +86,7 @@ Result<Json> calibrateLeds(const JobRun& run) {
     const Result<proc::LedMonitor> leds = measureWarmUp(run.measuring());
     if (!leds) return leds.error();
     run.bench().monitor.captured();
-    const auto kept = keep(run, "leds", run.celsius(), encodeLeds(*leds));
+    const auto kept = keep(run, {.kind = "leds", .celsius = run.celsius()}, encodeLeds(*leds));
     if (!kept) return kept.error();
     Json document = documentOf(run, *kept);
     for (const Band band : kBands) {
@@ -108,8 +106,9 @@ Result<Json> calibrateDark(const JobRun& run) {
     if (Result<void> dark = checkDark(run, darks->back()); !dark) return dark.error();
     run.bench().monitor.captured();
     const std::optional<double> warmth = run.sensorCelsius();
-    const auto kept =
-        keep(run, "dark", warmth, run.whileAlive([&] { return encodeDarks(*darks); }));
+    const auto kept = keep(run, {.kind = "dark", .celsius = warmth}, run.whileAlive([&] {
+        return encodeDarks(*darks);
+    }));
     if (!kept) return kept.error();
     Json document = documentOf(run, *kept);
     document["exposures"] = darks->size();

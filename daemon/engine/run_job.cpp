@@ -5,6 +5,7 @@
 #include "daemon/engine/reference_jobs.h"
 #include "daemon/engine/rig_jobs.h"
 #include "daemon/engine/sample_jobs.h"
+#include "daemon/engine/verify_white_job.h"
 
 namespace gonio::daemon {
 namespace {

@@ -60,12 +60,13 @@ Result<void> checkErrors(const PlaceRequest& request) {
 }
 
 /// Light on a surface that does not lie flat comes from other directions than the LEDs': a table
-/// must know something of each.
+/// must know something of each, unless it comes from below its horizon.
 Result<void> checkLit(const sim::Placement& placement, std::uint64_t seed) {
     const auto spots = sim::waves(seed, placement.errors.waviness);
     for (int led = 0; led < sim::kLeds; ++led) {
         const sim::Pose pose(placement.wedge, spots[static_cast<std::size_t>(led)]);
         const Direction in = pose.seenFromSurface(sim::ledDirection(led));
+        if (!in.aboveHorizon()) continue;  // it does not light it, whatever it is
         const auto answers = [&](std::size_t cell) {
             const Direction out = proc::CellGrid::centre(cell);
             return placement.surface->answer({.in = in, .out = out}).present();

@@ -47,8 +47,15 @@ struct Frame {
     double gainDb = 0;
     Window window;
     int bitDepth = 12;
-    std::uint16_t blackLevel = 0;                  ///< DN
-    std::array<std::optional<double>, 4> celsius;  ///< LED board, sensor, body, ambient at start
+    std::uint16_t blackLevel = 0;  ///< DN
+    /// Places in `celsius`, at the start of the exposure.
+    enum Thermometer : std::size_t {
+        LedBoard,
+        Sensor,
+        Body,
+        Ambient
+    };
+    std::array<std::optional<double>, 4> celsius;
     std::array<double, 3> currentMinMilliamp{}, currentMaxMilliamp{};
     std::uint32_t saturatedPixels = 0;
     Microseconds start{0};  ///< on the rig's own clock, from its boot

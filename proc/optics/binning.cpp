@@ -132,7 +132,8 @@ std::span<const Binning::Share> Binning::sharesOf(std::size_t cell) const {
 
 CellSignal Binning::bin(const Image<float>& radiance, const Image<float>& variance) const {
     assert(radiance.size() == window_.sent() && variance.size() == radiance.size());
-    const Picture picture{.radiance = radiance.pixels(), .variance = variance.pixels()};
+    const Picture picture{
+        .radiance = radiance.pixels(), .variance = variance.pixels(), .second = {}};
     CellSignal out = CellSignal::missing(CellGrid::count());
     parallelFor(CellGrid::count(), [&](IndexRange cells) {
         for (std::size_t cell = cells.begin; cell < cells.end; ++cell) bin(picture, cell, out);
@@ -145,35 +146,26 @@ Binning::Both Binning::bin(const Image<float>& radiance,
                            const Image<float>& second) const {
     assert(radiance.size() == window_.sent() && variance.size() == radiance.size() &&
            second.size() == radiance.size());
-    const Picture picture{.radiance = radiance.pixels(), .variance = variance.pixels()};
+    const Picture picture{
+        .radiance = radiance.pixels(), .variance = variance.pixels(), .second = second.pixels()};
     Both both{.first = CellSignal::missing(CellGrid::count()), .second = {}};
     both.second = both.first.signal;
     parallelFor(CellGrid::count(), [&](IndexRange cells) {
         for (std::size_t cell = cells.begin; cell < cells.end; ++cell) {
-            bin(picture, cell, both.first);
-            if (both.first.present(cell)) both.second[cell] = signalOf(second.pixels(), cell);
+            both.second[cell] = bin(picture, cell, both.first);
         }
     });
     return both;
 }
 
-double Binning::signalOf(std::span<const float> radiance, std::size_t cell) const {
-    double signal = 0, used = 0;
-    for (const Share& share : sharesOf(cell)) {
-        if (!std::isfinite(radiance[share.pixel])) continue;
-        signal += double{share.weight} * double{radiance[share.pixel]};
-        used += double{share.solidAngle};
-    }
-    return signal / used;
-}
-
-void Binning::bin(const Picture& picture, std::size_t cell, CellSignal& out) const {
+double Binning::bin(const Picture& picture, std::size_t cell, CellSignal& out) const {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
     if (CellGrid::place(cell).row >= visibleRows_) {
         out.flags[cell].set(Flag::Blocked);
-        return;
+        return nan;
     }
-    const auto& [radiance, noise] = picture;
-    double signal = 0;
+    const auto& [radiance, noise, second] = picture;
+    double signal = 0, secondSignal = 0;
     double variance = 0;
     double used = 0;       // steradian
     double saturated = 0;  // steradian
@@ -187,6 +179,7 @@ void Binning::bin(const Picture& picture, std::size_t cell, CellSignal& out) con
         }
         const double weight = share.weight;
         signal += weight * radiance[share.pixel];
+        if (!second.empty()) secondSignal += weight * second[share.pixel];
         variance += weight * weight * noise[share.pixel];
         used += omega;
         weights += weight;
@@ -194,16 +187,17 @@ void Binning::bin(const Picture& picture, std::size_t cell, CellSignal& out) con
     }
     if (saturated > kMostSaturated * (used + saturated)) {
         out.flags[cell].set(Flag::Saturated);
-        return;
+        return nan;
     }
     if (used + saturated < kSeenWhole * CellGrid::solidAngle(cell)) {
         out.flags[cell].set(Flag::Blocked);
-        return;
+        return nan;
     }
     out.signal[cell] = signal / used;
     out.variance[cell] = variance / (used * used);
     out.nEff[cell] = weights * weights / squares;
     out.flags[cell].set(Flag::Measured);
+    return secondSignal / used;
 }
 
 }  // namespace gonio::proc

@@ -67,9 +67,10 @@ private:
     [[nodiscard]] std::span<const Share> sharesOf(std::size_t cell) const;
     struct Picture {
         std::span<const float> radiance, variance;
+        std::span<const float> second;  // may be empty
     };
-    void bin(const Picture& picture, std::size_t cell, CellSignal& out) const;
-    [[nodiscard]] double signalOf(std::span<const float> radiance, std::size_t cell) const;
+    /// The second picture's signal; NaN where the cell is not present.
+    double bin(const Picture& picture, std::size_t cell, CellSignal& out) const;
 
     Window window_;
     std::vector<Share> shares_;            // sorted by cell

@@ -54,7 +54,9 @@ CellPlace CellGrid::place(std::size_t cell) {
     return {static_cast<int>(row), static_cast<int>(cell - first[static_cast<std::size_t>(row)])};
 }
 
+/// Kept: each measurement asks for each of them many times.
 Direction CellGrid::centre(std::size_t cell) {
+    assert(cell < count());
     static const std::vector<Direction> centres = [] {
         std::vector<Direction> all;
         for (int row = 0; row < kRows; ++row) {

@@ -225,6 +225,30 @@ FitReport fitJoint(const std::vector<Sightings>& leds, double alpha) {
                 .maxIterations = kMostIterations});
 }
 
+/// From where a fit ended without convergence, with f0 held there: it is next to nothing in a lobe
+/// that the LEDs' strengths have taken up, and a fit does not settle with it at its bound.
+FitReport fitHeld(const std::vector<Sightings>& leds, const std::vector<double>& from) {
+    const auto residuals = [&](std::span<const double> p, std::span<double> out) {
+        const Shape shape = shapeOf(std::array{p[0], p[1], p[2], from[3]});
+        for (const Sightings& led : leds) {
+            residualsOf(led, shape, normalOf(p[0], p[1]), out.first(led.size()));
+            out = out.subspan(led.size());
+        }
+        return true;
+    };
+    FitReport report = fit({.residuals = residuals,
+                            .residualCount = countOf(leds),
+                            .start = {from[0], from[1], from[2]},
+                            .lower = {-kSteepest, -kSteepest, std::log(kNarrowest)},
+                            .upper = {kSteepest, kSteepest, 0},
+                            .maxIterations = kMostIterations});
+    report.params.push_back(from[3]);
+    Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(4, 4);
+    covariance.topLeftCorner(3, 3) = report.covariance;
+    report.covariance = std::move(covariance);
+    return report;
+}
+
 /// Sum of squared residuals where there is no lobe, only the floor.
 double matt(const std::vector<Sightings>& leds) {
     double sum = 0;
@@ -250,11 +274,22 @@ FitReport noFit() {
 /// From several widths, as a start too narrow or too wide does not see the lobe. Empty: there is
 /// none; not ok: there is one, and no fit finds it.
 std::optional<FitReport> bestJoint(const std::vector<Sightings>& leds) {
-    std::optional<FitReport> best;
+    std::optional<FitReport> best, unsettled;
+    const auto better = [](const FitReport& report, const std::optional<FitReport>& than) {
+        return std::isfinite(report.rms) && (!than || report.rms < than->rms);
+    };
     for (double alpha : {0.05, 0.2, 0.5}) {
         FitReport report = fitJoint(leds, alpha);
-        if (report.ok() && (!best || report.rms < best->rms)) best = std::move(report);
+        if (!report.ok()) {
+            if (better(report, unsettled)) unsettled = std::move(report);
+        } else if (better(report, best)) {
+            best = std::move(report);
+        }
         if (best && best->rms < kGoodFit) break;
+    }
+    if (!best && unsettled) {
+        FitReport report = fitHeld(leds, unsettled->params);
+        if (report.ok()) best = std::move(report);
     }
     const double count = static_cast<double>(countOf(leds));
     const double left = best ? best->rms * best->rms * count : count;
@@ -366,6 +401,12 @@ TiltEstimate undetermined(TiltEstimate estimate) {
 }
 
 }  // namespace
+
+TiltEstimate seated(std::size_t leds) {
+    const TiltLobe matt{.diffuse = 1, .specular = 0};
+    return undetermined(
+        {.joint = {}, .leds = {}, .lobes = std::vector(leds, matt), .waviness = {}});
+}
 
 double tiltedLobe(const TiltLobe& lobe, const Direction& normal, const LightView& pair) {
     return shownBy(lobe, toSurface(normal), pair);

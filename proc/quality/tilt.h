@@ -58,6 +58,10 @@ struct TiltEstimate {
 /// a lobe or a cell measured.
 [[nodiscard]] std::optional<TiltEstimate> estimateTilt(const SampleSet& sample, Radians uAngle);
 
+/// A sample of so many LEDs whose tilt nothing tells, and whose f no tilt changes: what samples are
+/// seated to.
+[[nodiscard]] TiltEstimate seated(std::size_t leds);
+
 /// f at a direction pair as a surface on a tilt shows it, by the fitted lobe.
 [[nodiscard]] double tiltedLobe(const TiltLobe& lobe,
                                 const Direction& normal,

@@ -72,16 +72,19 @@ Radians uOfOneLed(const TiltEstimate& estimate) {
         std::hypot(estimate.joint.uSeen.value(), estimate.waviness.value() / std::numbers::sqrt2));
 }
 
-/// Adds |d f / d tilt| u, about both axes together.
+/// Adds what a tilt of u (k = 1) about each axis does to f, root mean square: by three points of a
+/// Gauss-Hermite rule about each axis, which is the slope times u on a flank, and right where the
+/// top of a lobe has none, too.
 void widen(CellSamples& cells, const Place& place, Radians u) {
     const double here = tiltedLobe(place.lobe, Direction(), place.pair);
     if (!(here > 0)) return;
-    const double step = std::tan(u.value());
-    const auto along = [&](double x, double y) {
-        return tiltedLobe(place.lobe, *Direction::fromVector({x, y, 1}), place.pair);
+    const double step = std::tan(std::numbers::sqrt3 * u.value());
+    const auto off = [&](double x, double y) {
+        return tiltedLobe(place.lobe, *Direction::fromVector({x, y, 1}), place.pair) / here - 1;
     };
-    const double relative =
-        std::hypot(along(step, 0) - along(-step, 0), along(0, step) - along(0, -step)) / (2 * here);
+    const double relative = std::hypot(std::hypot(off(step, 0), off(-step, 0)),
+                                       std::hypot(off(0, step), off(0, -step))) /
+                            std::sqrt(6.0);
     double& systematic = cells.uSystematic[place.cell];
     systematic = std::hypot(systematic, std::abs(cells.f[place.cell]) * relative);
 }

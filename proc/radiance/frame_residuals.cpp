@@ -116,7 +116,8 @@ Eigen::VectorXd pattern(std::size_t frames, std::size_t first, std::size_t last)
     return ones;
 }
 
-/// What makes the frames of whole groups brighter than they say, without any change of the light.
+/// What makes frames brighter than they say, without any change of the light: wrong scales of whole
+/// groups, and the wandering zero of each frame.
 class NominalErrors {
 public:
     NominalErrors(const BracketSums& sums,
@@ -125,7 +126,10 @@ public:
         for (std::size_t g = 0; g < sums.groups.size(); ++g) {
             const Eigen::VectorXd frames = witnesses.framesOf(g);
             scales_.emplace_back(nominal.of(sums.groups[g]) * frames);
-            zeros_.emplace_back(nominal.zero * witnesses.noiseOf(g) * frames);
+        }
+        for (std::size_t i = 0; i < sums.witnesses.size(); ++i) {
+            const double u = nominal.zero * witnesses.noiseOf(sums.witnesses[i].group);
+            zeros_.emplace_back(u * pattern(sums.witnesses.size(), i, i));
         }
     }
     /// The standard deviation of what they show along a pattern.
@@ -139,7 +143,8 @@ public:
     }
 
 private:
-    std::vector<Eigen::VectorXd> scales_, zeros_;  // of each group: its u, in its frames
+    std::vector<Eigen::VectorXd> scales_;  // of each group: its u, in its frames
+    std::vector<Eigen::VectorXd> zeros_;   // of each frame
 };
 
 /// The most significant step or single frame that is worth a report.

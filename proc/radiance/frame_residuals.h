@@ -8,10 +8,10 @@
 // of the variance of that distance: 1 where noise alone differs. Frames of one exposure share the
 // noise of their dark frame (shared_noise.h). Changed light is looked for as a step (all frames
 // from one on are brighter) and as a single frame; the most significant one is reported that is at
-// least 5 standard uncertainties, as large as wanted, and beyond what wrong scales and zeros of
-// whole groups of frames make of it at 95 % (group_scales.h): a step between two groups of one
-// frame each looks no different from that. By noise alone one in 2e6 of these is a false alarm, and
-// of n frames 2 n - 3 are tried.
+// least 5 standard uncertainties, as large as wanted, and beyond what wrong scales of whole
+// groups of frames, and the wandering zero of each, make of it at 95 % (group_scales.h): a step
+// between two groups of one frame each looks no different from that. By noise alone one in 2e6 of
+// these is a false alarm, and of n frames 2 n - 3 are tried.
 //
 // With one frame, or without a pixel that two frames see, nothing can be said, and nothing is.
 
@@ -38,7 +38,7 @@ struct FrameResidual {
 struct LightChange {
     std::size_t first = 0, last = 0;
     BrightnessOffset offset;
-    double uNominal = 0;  ///< of the offset, by the nominal scales and zeros of the groups
+    double uNominal = 0;  ///< of the offset, by the nominal scales and zeros
 };
 
 struct FrameReport {

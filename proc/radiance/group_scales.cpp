@@ -61,17 +61,20 @@ private:
         };
         BlockOfPixels light;
         findLight(around(at.y - 1), around(at.y), around(at.y + 1), light);
+        const PixelFigures pixel{.electronsPerDn = sums_.noise.electronsPerDn,
+                                 .members = static_cast<double>(sums_.members())};
         GroupBlock group;
+        BlockOfPixels cool = light;
         std::vector<const NodeBlock*> all;
         for (std::size_t g = 0; g < nodes.size(); ++g) {
             readGroup(sums_, g, at, group);
-            const double k = sums_.noise.electronsPerDn;
-            asNode(group, figures_[g], k, sums_.members(), light, nodes[g]);
+            dropHot(group, cool);
+            nodes[g] = asNode(group, figures_[g], pixel, light);
             all.push_back(&nodes[g]);
         }
-        systems.all.add(light, all);
+        systems.all.add(cool, all);
         for (std::size_t pair = 0; pair < systems.pairs.size(); ++pair)
-            systems.pairs[pair].add(light, std::array{all[order_[pair]], all[order_[pair + 1]]});
+            systems.pairs[pair].add(cool, std::array{all[order_[pair]], all[order_[pair + 1]]});
     }
 
     const BracketSums& sums_;

@@ -18,14 +18,14 @@
 
 namespace gonio::proc {
 
-/// How well tau is known beforehand (k = 1).
+/// How well frames are known beforehand (k = 1): tau, and for the comparison of frames their zero.
 struct NominalUncertainty {
     Seconds exposure{0.5e-6};  ///< of each exposure
     double relative = 1e-4;    ///< of any tau
     double dimmed = 0.02;      ///< of a level below full
-    /// Of the mean of a picture less its dark frame, in units of a pixel's noise without light: the
-    /// sensor's zero wanders, and the columns of a frame are off by some tenths of an electron each.
-    /// In a picture of next to no light nothing else is to be seen.
+    /// Of the mean of a frame less its dark frame, in units of a pixel's noise without light: the
+    /// sensor's zero wanders, and its columns are off by some tenths of an electron each.
+    /// In a frame of next to no light nothing else is to be seen.
     double zero = 0.05;
 
     /// Of a group's tau, relative.

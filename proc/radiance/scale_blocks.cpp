@@ -20,28 +20,32 @@ namespace gonio::proc {
     }
 }
 
-[[gnu::target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")]] void asNode(
+[[gnu::target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")]] void dropHot(
+    const GroupBlock& group, BlockOfPixels& light) {
+    if (!group.anyHot) return;
+    for (std::size_t x = 0; x < kBlock; ++x) light[x] = group.excess[x] > 0 ? 0 : light[x];
+}
+
+[[gnu::target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")]] NodeBlock asNode(
     const GroupBlock& group,
     const GroupFigures& figures,
-    double electronsPerDn,
-    double members,
-    BlockOfPixels& light,
-    NodeBlock& node) {
+    const PixelFigures& pixel,
+    const BlockOfPixels& light) {
     const GroupFigures f = figures;
-    const double perSecond = electronsPerDn / f.tau;
+    const double perSecond = pixel.electronsPerDn / f.tau, members = pixel.members;
+    NodeBlock node;
     for (std::size_t x = 0; x < kBlock; ++x) {
         const double n = group.count[x];
         const double single = light[x] * f.tau / members + f.floorVariance;
         node.weight[x] = f.tau * f.tau * n / (single + n * f.darkVariance);
         node.rate[x] = group.net[x] * perSecond / std::max(n, 1.0);
     }
-    if (!group.anyHot) return;
-    for (std::size_t x = 0; x < kBlock; ++x) light[x] = group.excess[x] > 0 ? 0 : light[x];
+    return node;
 }
 
-[[gnu::target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")]] SharedBlock shared(
+[[gnu::target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")]] PooledBlock pooled(
     const BlockOfPixels& light, std::span<const NodeBlock* const> nodes) {
-    SharedBlock block;
+    PooledBlock block;
     BlockOfPixels sum{}, seen{};
     for (const NodeBlock* const node : nodes) {
         for (std::size_t x = 0; x < kBlock; ++x) {
@@ -59,7 +63,7 @@ namespace gonio::proc {
 }
 
 [[gnu::target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")]] double pullOf(
-    const SharedBlock& block, const NodeBlock& node) {
+    const PooledBlock& block, const NodeBlock& node) {
     BlockOfPixels pull;
     for (std::size_t x = 0; x < kBlock; ++x)
         pull[x] = block.light[x] * node.weight[x] * (node.rate[x] - block.mean[x]);
@@ -67,16 +71,15 @@ namespace gonio::proc {
 }
 
 [[gnu::target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")]] PairSums pairSums(
-    const SharedBlock& block, const NodeBlock& i, const NodeBlock& j) {
-    const double same = &i == &j ? 1 : 0;
-    BlockOfPixels h, g, a;
+    const PooledBlock& block, const NodeBlock& i, const NodeBlock& j, bool same) {
+    const double own = same ? 1 : 0;
+    BlockOfPixels h, g;
     for (std::size_t x = 0; x < kBlock; ++x) {
-        const double p = i.weight[x] * (same - j.weight[x] * block.inverse[x]);
-        a[x] = block.light[x] * p;
-        h[x] = a[x] * block.mean[x];
-        g[x] = a[x] * block.light[x];
+        const double p = i.weight[x] * (own - j.weight[x] * block.inverse[x]);
+        h[x] = block.light[x] * block.mean[x] * p;
+        g[x] = block.light[x] * block.light[x] * p;
     }
-    return {.h = total(h), .g = total(g), .a = total(a)};
+    return {.h = total(h), .g = total(g)};
 }
 
 }  // namespace gonio::proc

@@ -12,8 +12,8 @@ struct NodeBlock {
     BlockOfPixels rate{}, weight{};
 };
 
-/// What the nodes of a system have in common.
-struct SharedBlock {
+/// What all nodes of a system say together.
+struct PooledBlock {
     BlockOfPixels light{};    ///< y; 0: the pixel says nothing
     BlockOfPixels inverse{};  ///< 1 / sum of weights
     BlockOfPixels mean{};     ///< zbar
@@ -26,23 +26,33 @@ void findLight(std::span<const float> above,
                std::span<const float> below,
                BlockOfPixels& light);
 
-/// A group's samples as a node's, where the light is `light`; a hot pixel's light is set to 0.
-void asNode(const GroupBlock& group,
-            const GroupFigures& figures,
-            double electronsPerDn,
-            double members,
-            BlockOfPixels& light,
-            NodeBlock& node);
+/// A hot pixel says more of itself than of the light, which is set to 0 there.
+void dropHot(const GroupBlock& group, BlockOfPixels& light);
 
-[[nodiscard]] SharedBlock shared(const BlockOfPixels& light,
+/// What a DN is.
+struct PixelFigures {
+    double electronsPerDn = 1;
+    double members = 1;  ///< sensor pixels that one pixel is the mean of
+};
+/// A group's samples as a node's, where the light is `light`.
+[[nodiscard]] NodeBlock asNode(const GroupBlock& group,
+                               const GroupFigures& figures,
+                               const PixelFigures& pixel,
+                               const BlockOfPixels& light);
+
+[[nodiscard]] PooledBlock pooled(const BlockOfPixels& light,
                                  std::span<const NodeBlock* const> nodes);
 
 /// b_i.
-[[nodiscard]] double pullOf(const SharedBlock& block, const NodeBlock& node);
-/// H_ij, G_ij and sum y P_ij.
+[[nodiscard]] double pullOf(const PooledBlock& block, const NodeBlock& node);
+/// H_ij and G_ij.
 struct PairSums {
-    double h = 0, g = 0, a = 0;
+    double h = 0, g = 0;
 };
-[[nodiscard]] PairSums pairSums(const SharedBlock& block, const NodeBlock& i, const NodeBlock& j);
+/// `same`: i = j.
+[[nodiscard]] PairSums pairSums(const PooledBlock& block,
+                                const NodeBlock& i,
+                                const NodeBlock& j,
+                                bool same);
 
 }  // namespace gonio::proc

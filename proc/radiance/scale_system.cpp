@@ -65,14 +65,13 @@ void ScaleSystem::add(double light, std::span<const double> rate, const SharedWe
 }
 
 void ScaleSystem::add(const BlockOfPixels& light, std::span<const NodeBlock* const> nodes) {
-    const SharedBlock block = shared(light, nodes);
+    const PooledBlock block = pooled(light, nodes);
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         b_(signedIndex(i)) += pullOf(block, *nodes[i]);
         for (std::size_t j = 0; j <= i; ++j) {
-            const PairSums sums = pairSums(block, *nodes[i], *nodes[j]);
+            const PairSums sums = pairSums(block, *nodes[i], *nodes[j], i == j);
             h_(signedIndex(i), signedIndex(j)) += sums.h;
             g_(signedIndex(i), signedIndex(j)) += sums.g;
-            a_(signedIndex(i), signedIndex(j)) += sums.a;
         }
     }
 }

@@ -40,7 +40,8 @@ public:
     /// the node has none. A pixel that less than two nodes see says nothing.
     void add(double light, std::span<const double> rate, std::span<const double> weight);
     void add(double light, std::span<const double> rate, const SharedWeights& weights);
-    /// A block of them, one node for each of the system's. Its slow twin is the first `add`.
+    /// A block of them, one node for each of the system's. Its slow twin is the first `add`, but
+    /// for `addedAlong`, which these pixels say nothing of.
     void add(const BlockOfPixels& light, std::span<const NodeBlock* const> nodes);
     ScaleSystem& operator+=(const ScaleSystem& other);
 

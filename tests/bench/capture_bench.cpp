@@ -1,5 +1,6 @@
 // From captures to a calibrated sample: the frames of 12 states (4 LEDs x R, G, B), as a rig with
-// the usual errors gives them, added up, merged, freed of glare, binned and calibrated. The rig is
+// the usual errors gives them, added up, merged, freed of glare, binned, calibrated and judged but
+// for ambient light. The rig is
 // simulated before the clock starts, so that it does not share the cores; the yardstick is a copy
 // of the frames' pixels.
 
@@ -7,7 +8,6 @@
 
 #include <cstdlib>
 #include <cstring>
-#include <iostream>
 
 #include "daemon/gathering.h"
 #include "daemon/sample_quality.h"
@@ -24,6 +24,7 @@ public:
         lab_.calibrateBlack();
         lab_.calibrateWhite();
         frames_ = lab_.frames("ggx,alpha=0.1,f0=0.5", {.frames = 1});
+        if (!lab_.lens() || !lab_.lens()->glare || frames_.brackets.empty()) std::abort();
         const Window& window = frames_.brackets.front().frames.front().window;
         const proc::LensMap& lens = lab_.lens()->fit.map;
         binning_.emplace(lens, window, kField);
@@ -62,7 +63,7 @@ public:
         proc::SampleSet sample =
             calibrateSample(captured.signals, lab_.ledAngles(), references, {.name = "x"});
         judgeCapture(sample, captured, references);
-        judgeTable(sample);
+        judgeTable(sample, lab_.profile().quality.sample);
         return sample;
     }
 

@@ -165,7 +165,7 @@ constexpr double kBytesPerPixel = 1.5 + 2 + 2 + 4 + 4 + 4 + 4 + 4 + 10.0 / kFram
 constexpr auto kTouched = static_cast<std::size_t>(kBytesPerPixel * 1024 * 1024);
 
 /// CPU time of one core per frame: all threads' time counts.
-void mergedFrame(benchmark::State& state) {
+void mergedFrame(benchmark::State& state, const Linearity& response) {
     std::vector<std::vector<std::uint8_t>> wire;
     std::vector<Frame> frames;
     for (int i = 0; i < kFrames; ++i) {
@@ -173,7 +173,7 @@ void mergedFrame(benchmark::State& state) {
         wire.push_back(driver::packPixels(frames.back().pixels, driver::PixelFormat::Mono12Packed));
     }
     const DarkLibrary darks = test::perfectDarks(test::wideLadder(), kSize);
-    MergeAccumulator accumulator(Band::G, darks, {});
+    MergeAccumulator accumulator(Band::G, darks, {}, response);
     for (auto _ : state) {
         accumulator.restart(Band::G);
         for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -186,7 +186,17 @@ void mergedFrame(benchmark::State& state) {
     }
     state.SetItemsProcessed(state.iterations() * kFrames);
 }
-BENCHMARK(mergedFrame)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->Repetitions(5);
+BENCHMARK_CAPTURE(mergedFrame, proportional, Linearity{})
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->Repetitions(5);
+/// A response that was measured to bend by 0.3 %, of the usual degree.
+BENCHMARK_CAPTURE(mergedFrame,
+                  linearised,
+                  Linearity{.blackDn = 64, .rangeDn = 4031, .coefficients = {0.012, -0.012, 1e-4}})
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->Repetitions(5);
 
 /// The same frames added only: what has to keep up with the camera.
 void addedFrame(benchmark::State& state) {

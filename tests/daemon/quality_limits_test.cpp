@@ -97,6 +97,8 @@ TEST_F(QualityLimits, RefusesWhatItDoesNotKnowOrCannotBe) {
     refused("[tilts]\nwarned_deg = 1\n", "tilts.warned_deg");
     refused("[tilt]\nwarned_deg = 6\n", "tilt.warned_deg");
     refused("[tilt]\nrefused_deg = 9\n", "tilt.refused_deg");
+    refused("[tilt]\ncorrected_deg = 0.5\nwarned_deg = 0.3\nrefused_deg = 0.4\n",
+            "tilt.corrected_deg");
     refused("[ambient]\nwarned = 2\n", "ambient.warned");
     refused("[ambient]\nwarned = -1\n", "ambient.warned");
     refused("[drift]\nwarned = 0\n", "drift.warned");
@@ -119,6 +121,14 @@ TEST_F(QualityLimits, ARigProfileGoesByTheFileThatItNames) {
     ASSERT_TRUE(strict) << strict.error().message;
     EXPECT_EQ(strict->quality.sample.drift, 0.003);
     EXPECT_EQ(usual->quality.sample.drift, 0.015);
+    EXPECT_EQ(usual->quality.name, "usual");
+    EXPECT_EQ(strict->quality.name, "q");
+    EXPECT_EQ(strict->hash, usual->hash) << "no calibration depends on them";
+    const std::size_t section = text.find("\n[quality]");
+    ASSERT_NE(section, std::string::npos);
+    std::ofstream(folder / "rig.toml") << text.substr(0, section);
+    EXPECT_EQ(readProfile(folder / "rig.toml")->hash, usual->hash);
+    std::ofstream(folder / "rig.toml") << text;
     ASSERT_FALSE(read("[drift]\nwarned = 0\n"));
     const auto bad = readProfile(folder / "rig.toml");
     ASSERT_FALSE(bad);

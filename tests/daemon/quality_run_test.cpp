@@ -93,8 +93,8 @@ public:
         const RigReferences references{*lens_, white_, black_, certified_, profile_};
         proc::SampleSet sample = calibrateSample(captured.signals, leds(), references, {});
         judgeCapture(sample, captured, references);
-        judgeTable(sample);
-        judgeBacking(sample, backing);
+        judgeTable(sample, {});
+        judgeBacking(sample, backing, {});
         return sample;
     }
 

@@ -87,8 +87,17 @@ TEST(SamplePose, FlatSampleIsLetBe) {
 
 TEST(SamplePose, MattSamplesAreNeverWavyNorTilted) {
     for (const char* spec : {"lambert,albedo=0.5", "oren-nayar,albedo=0.8,sigma=0.3"}) {
-        const auto same = referredToItsNormal(seen(spec, tilted(0.5_deg)), kLens);
+        const auto sample = seen(spec, tilted(0.5_deg));
+        const auto same = referredToItsNormal(sample, kLens);
         EXPECT_FALSE(corrected(same)) << spec;
+        // Its seat changes cos(theta_o): 0.25 degrees about each axis are tan(theta_o) 0.0044.
+        const proc::CellSamples& before = sample.leds[1].bands[0];
+        const proc::CellSamples& after = same.leds[1].bands[0];
+        for (const std::size_t cell : {std::size_t{100}, std::size_t{9000}}) {
+            const double had = before.uSystematic[cell], has = after.uSystematic[cell];
+            const double wanted = 0.0044 * tan(proc::CellGrid::centre(cell).theta());
+            EXPECT_NEAR(std::sqrt(has * has - had * had) / after.f[cell], wanted, 0.02 * wanted);
+        }
         EXPECT_EQ(verdictOf(same, "tilt").grade, proc::Grade::NotDetermined) << spec;
         EXPECT_EQ(verdictOf(same, "waviness").grade, proc::Grade::NotDetermined) << spec;
     }

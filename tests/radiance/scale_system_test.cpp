@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <random>
+#include <utility>
 
 namespace gonio::proc {
 namespace {
@@ -100,8 +101,27 @@ TEST(ScaleSystem, ABlockSaysWhatItsPixelsSay) {
         ASSERT_TRUE(fast && slow);
         EXPECT_NEAR(fast->size, slow->size, 1e-12);
         EXPECT_NEAR(fast->u, slow->u, 1e-12);
-        const Eigen::Vector3d added{0.3, 0, -0.1};
-        EXPECT_NEAR(blocks.addedAlong(pattern, added), pixels.addedAlong(pattern, added), 1e-12);
+    }
+}
+
+TEST(ScaleSystem, TheLightOfABlockIsThatAroundItsPixels) {
+    std::mt19937_64 random(8);
+    std::uniform_real_distribution<float> some(-0.2F, 2);
+    for (const int width : {2, 3, 64, 65, 66, 67, 131}) {
+        Image<float> picture({width, 3});
+        for (float& pixel : picture.pixels())
+            pixel = some(random) < 0 ? std::nanf("") : some(random);
+        for (int x = 1; x + 1 < width; x += static_cast<int>(kBlock)) {
+            const auto from = [&](int y) {
+                return std::as_const(picture).row(y).subspan(static_cast<std::size_t>(x) - 1);
+            };
+            BlockOfPixels light;
+            findLight(from(0), from(1), from(2), light);
+            for (std::size_t i = 0; i < kBlock; ++i) {
+                const auto wanted = lightAround(picture, x + static_cast<int>(i), 1);
+                EXPECT_EQ(light[i], wanted.value_or(0)) << width << ' ' << x << ' ' << i;
+            }
+        }
     }
 }
 

@@ -144,17 +144,15 @@ std::vector<Verdict> CoverageStudy::repeat(std::uint64_t seed) const {
         };
         proc::SampleSet flat =
             calibrated([&](std::size_t, const Direction& wo) { return uAngle(wo); });
-        if (materials()[m].glossy) {  // as `gonio measure` does it
-            const auto tilt = proc::estimateTilt(
-                flat, uAngle(Direction::fromSpherical(kTypicalView, Radians(0))));
-            if (daemon::worthCorrecting(tilt)) {
-                const proc::SeenDirection seen(lens, incidences, *tilt);
-                flat = calibrated([&](std::size_t led, const Direction& wo) {
-                    return seen.uncertainty(led, wo);
-                });
-            }
-            flat = daemon::referredToItsNormal(std::move(flat), tilt);
+        // As `gonio measure` does it.
+        const auto tilt =
+            proc::estimateTilt(flat, uAngle(Direction::fromSpherical(kTypicalView, Radians(0))));
+        if (daemon::worthCorrecting(tilt)) {
+            const proc::SeenDirection seen(lens, incidences, *tilt);
+            flat = calibrated(
+                [&](std::size_t led, const Direction& wo) { return seen.uncertainty(led, wo); });
         }
+        flat = daemon::referredToItsNormal(std::move(flat), tilt);
         for (std::size_t i = 0; i < kLeds.size(); ++i) {
             const proc::CellSamples& cells = flat.leds[i].bands[index(kBand)];
             for (std::size_t cell = 0; cell < cells.size(); ++cell) {

@@ -234,10 +234,16 @@ TEST(MeasureRun, WithAllThatCanBeCalibratedTheRigIsKnownAndTheSampleGood) {
     EXPECT_NEAR(sensor["read_noise_electrons"], 2.4, 0.1) << sensor;
     const Json leds = gonio({"calibrate", "leds"});
     EXPECT_EQ(leds["schema"], "gonio/calibrate-leds/1");
+    // They lose 0.4, 0.1 and 0.1 % in the 3 K that their board warms by.
+    for (const auto& [band, perKelvin] :
+         {std::pair("r", -0.00133), std::pair("g", -0.00033), std::pair("b", -0.00033)})
+        EXPECT_NEAR(leds["bands"][band]["per_kelvin"], perKelvin, 1e-4) << leds;
     const Json flat = gonio({"calibrate", "flat"});
     EXPECT_EQ(flat["schema"], "gonio/calibrate-flat/1");
+    EXPECT_NEAR(flat["spread"], 0.007, 0.0005) << flat;
     const Json dark = gonio({"calibrate", "dark"});
     EXPECT_EQ(dark["schema"], "gonio/calibrate-dark/1");
+    EXPECT_EQ(dark["sensor_celsius"], 25);
     gonio({"sim", "place", "black"});
     gonio({"calibrate", "black"});
     gonio({"sim", "place", "white"});
@@ -256,6 +262,7 @@ TEST(MeasureRun, WithAllThatCanBeCalibratedTheRigIsKnownAndTheSampleGood) {
     gonio({"sim", "place", "white", "--turned", "90"});
     const Json turned = gonio({"verify-white", "--turned"});
     EXPECT_EQ(turned["schema"], "gonio/verify-white/1");
+    EXPECT_NEAR(turned["texture"], 0.003, 0.0005) << turned;
 }
 
 /// Over 20 runs whose systematic errors are stratified, each component of the references takes each

@@ -246,6 +246,9 @@ TEST_F(SimPortInStore, ATableIsTiltedWhereItAnswers) {
     EXPECT_EQ(beyond.error().kind, ErrorKind::Usage);
     EXPECT_NE(beyond.error().message.find("LED 3 is 72.00 degrees"), std::string::npos)
         << beyond.error().message;
+    // A model is lit from anywhere, or from below its horizon and not at all.
+    for (const double tilt : {-30.0, -29.0, 30.0})
+        EXPECT_TRUE(port->place({.what = "model:lambert,albedo=0.5", .tiltYDegrees = tilt}));
     // A measured sample answers between the incidences of its LEDs.
     const auto bytes =
         proc::encodeGonio(gonio::test::sampleSet([](Radians, const Direction&) { return 0.2; }));
