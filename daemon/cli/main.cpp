@@ -86,8 +86,9 @@ void Program::addSim() {
         ->required();
     sub->add_option(
         "--tilt-x", place.tiltXDegrees, "wedge of the mirror or the sample: about x, degrees");
-    sub->add_option(
-        "--tilt-y,--tilt", place.tiltYDegrees, "wedge of the mirror or the sample: about y, degrees");
+    sub->add_option("--tilt-y,--tilt",
+                    place.tiltYDegrees,
+                    "wedge of the mirror or the sample: about y, degrees");
     sub->add_option("--seed", place.seed, "seed of the rig's noise, 0 or above (kept)")
         ->check(CLI::NonNegativeNumber);
     sub->add_option(
