@@ -3,14 +3,14 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "tests/daemon/cli/running_daemon.h"
-#include "tests/support/json_schema.h"
+#include "tests/daemon/cli/lab_bench.h"
 
 namespace gonio {
 namespace {
 
 using Json = nlohmann::json;
-using test::Program;
+using test::Bench;
+using test::expectAccurate;
 using test::Ran;
 
 const std::vector<std::string> kSamples{
@@ -36,77 +36,26 @@ void expectAsPlanned(const Json& measured) {
     EXPECT_NEAR(achieved["cells"], planned["cells"], 0.02 * planned["cells"].get<double>());
 }
 
-/// A lab: a daemon on the simulated rig, and its store.
-class Bench {
-public:
-    /// Runs a command that must succeed; its JSON.
-    Json operator()(std::vector<std::string> arguments) const {
-        arguments.insert(arguments.begin(), "--json");
-        const Ran ran = program(arguments);
-        EXPECT_EQ(ran.exitCode, 0) << ran.err;
-        Json json = Json::parse(ran.out, nullptr, false);
-        EXPECT_FALSE(json.is_discarded()) << ran.out;
-        EXPECT_EQ(test::complaintsOf(json), "") << json;
-        return json;
-    }
-    void calibrate(const std::string& systematic, int seed) const {
-        place("mirror", systematic, seed);
-        const Json mirror = (*this)({"calibrate", "mirror"});
-        EXPECT_EQ(mirror["schema"], "gonio/calibrate-mirror/1");
-        EXPECT_EQ(mirror["spots"], 33);
-        EXPECT_LT(mirror["rms_px"], 0.1);
-        place("black", systematic, seed);
-        (*this)({"calibrate", "black"});
-        place("white", systematic, seed);
-        const Json white = (*this)({"calibrate", "white"});
-        // 1 where noise alone differs between the exposures of a bracket: some 1e7 degrees of
-        // freedom, so that the spread is far below what is allowed for the noise model.
-        EXPECT_NEAR(white["chi_square_per_freedom"], 1, 0.01);
-    }
-    /// Measures all samples: the score of each, and what `measure` said.
-    struct Measured {
-        Json scores;
-        std::vector<Json> runs;
-    };
-    [[nodiscard]] Measured measureAll() const {
-        Measured all;
-        std::vector<std::string> score{"sim", "score"};
-        for (std::size_t i = 0; i < kSamples.size(); ++i) {
-            const std::string name = "s" + std::to_string(i);
-            (*this)({"sim", "place", kSamples[i]});
-            const Json measured = (*this)({"measure", name});
-            EXPECT_EQ(measured["schema"], "gonio/measure/1");
-            EXPECT_NEAR(measured["chi_square_per_freedom"], 1, 0.01);
-            expectAsPlanned(measured);
-            score.push_back(measured["file"]);
-            all.runs.push_back(measured);
-        }
-        all.scores = (*this)(score)["samples"];
-        return all;
-    }
-
-    Program program;
-    test::RunningDaemon daemon{program};
-
-private:
-    void place(const std::string& what, const std::string& systematic, int seed) const {
-        (*this)({"sim",
-                 "place",
-                 what,
-                 "--seed",
-                 std::to_string(seed),
-                 "--systematic",
-                 systematic,
-                 "--serial",
-                 "SIM-" + std::to_string(1000 + seed)});
-    }
+/// Measures all samples: the score of each, and what `measure` said.
+struct Measured {
+    Json scores;
+    std::vector<Json> runs;
 };
-
-/// The bounds on the error of one sample.
-void expectAccurate(const Json& sample) {
-    EXPECT_LE(sample["median_relative_error"], 0.015) << sample;
-    EXPECT_LE(sample["p95_relative_error"], 0.06) << sample;
-    EXPECT_GT(sample["cells"], 40'000) << sample;
+Measured measureAll(const Bench& gonio) {
+    Measured all;
+    std::vector<std::string> score{"sim", "score"};
+    for (std::size_t i = 0; i < kSamples.size(); ++i) {
+        const std::string name = "s" + std::to_string(i);
+        gonio({"sim", "place", kSamples[i]});
+        const Json measured = gonio({"measure", name});
+        EXPECT_EQ(measured["schema"], "gonio/measure/1");
+        EXPECT_NEAR(measured["chi_square_per_freedom"], 1, 0.01);
+        expectAsPlanned(measured);
+        score.push_back(measured["file"]);
+        all.runs.push_back(measured);
+    }
+    all.scores = gonio(score)["samples"];
+    return all;
 }
 
 /// A measured sample can be looked at, evaluated, exported and plotted, and says the same each
@@ -190,7 +139,7 @@ void expectPlansHold(const Bench& gonio) {
 TEST(MeasureRun, WithoutSystematicErrorsNoiseExplainsTheRest) {
     const Bench gonio;
     gonio.calibrate("none", 1);
-    const Bench::Measured all = gonio.measureAll();
+    const Measured all = measureAll(gonio);
     double inside = 0, cells = 0;
     for (const Json& sample : all.scores) {
         expectAccurate(sample);
@@ -207,7 +156,7 @@ TEST(MeasureRun, WithoutSystematicErrorsNoiseExplainsTheRest) {
 
 TEST(MeasureRun, SameSeedGivesTheSameBytes) {
     const auto measured = [] {
-        const Bench gonio;
+        const Bench gonio("[20, 320]");  // a third of the pictures
         gonio.calibrate("random", 7);
         gonio({"sim", "place", kSamples[2]});
         gonio({"measure", "x", "--effort", "draft"});
@@ -218,51 +167,6 @@ TEST(MeasureRun, SameSeedGivesTheSameBytes) {
     const std::string once = measured();
     EXPECT_GT(once.size(), 1'000'000U);
     EXPECT_EQ(once, measured());
-}
-
-/// A rig with the usual errors, and all that can be calibrated of it: what each says of the rig is
-/// what was wrong with it, and a sample that was measured with all of them is as good, and the same
-/// when it is worked out again.
-TEST(MeasureRun, WithAllThatCanBeCalibratedTheRigIsKnownAndTheSampleGood) {
-    const Bench gonio;
-    gonio({"sim", "place", "mirror", "--rig-errors", "typical"});
-    gonio({"calibrate", "mirror"});
-    gonio({"sim", "place", "white"});
-    const Json sensor = gonio({"calibrate", "sensor"});
-    // 2.6 electrons per DN and 2.4 of read noise; half a per cent of the gain is the bend's.
-    EXPECT_NEAR(sensor["electrons_per_dn"], 2.6, 0.03) << sensor;
-    EXPECT_NEAR(sensor["read_noise_electrons"], 2.4, 0.1) << sensor;
-    const Json leds = gonio({"calibrate", "leds"});
-    EXPECT_EQ(leds["schema"], "gonio/calibrate-leds/1");
-    // They lose 0.4, 0.1 and 0.1 % in the 3 K that their board warms by.
-    for (const auto& [band, perKelvin] :
-         {std::pair("r", -0.00133), std::pair("g", -0.00033), std::pair("b", -0.00033)})
-        EXPECT_NEAR(leds["bands"][band]["per_kelvin"], perKelvin, 1e-4) << leds;
-    const Json flat = gonio({"calibrate", "flat"});
-    EXPECT_EQ(flat["schema"], "gonio/calibrate-flat/1");
-    EXPECT_NEAR(flat["spread"], 0.007, 0.0005) << flat;
-    const Json dark = gonio({"calibrate", "dark"});
-    EXPECT_EQ(dark["schema"], "gonio/calibrate-dark/1");
-    EXPECT_EQ(dark["sensor_celsius"], 25);
-    gonio({"sim", "place", "black"});
-    gonio({"calibrate", "black"});
-    gonio({"sim", "place", "white"});
-    gonio({"calibrate", "white"});
-
-    gonio({"sim", "place", kSamples[2]});
-    const Json measured = gonio({"measure", "all"});
-    EXPECT_EQ(measured["calibration"], "1+6+7+4+3+2") << "mirror, black, white, flat, leds, sensor";
-    const Json info = gonio({"info", measured["file"]});
-    for (const auto& [name, verdict] : info["qc"].items())
-        EXPECT_NE(verdict["grade"], "refused") << name << ' ' << verdict;
-    expectAccurate(gonio({"sim", "score", measured["file"]})["samples"][0]);
-    EXPECT_TRUE(gonio({"recalibrate", "all"})["identical"]);
-
-    // The certificate says how far directions of the white differ; turned, it shows them.
-    gonio({"sim", "place", "white", "--turned", "90"});
-    const Json turned = gonio({"verify-white", "--turned"});
-    EXPECT_EQ(turned["schema"], "gonio/verify-white/1");
-    EXPECT_NEAR(turned["texture"], 0.003, 0.0005) << turned;
 }
 
 /// Over 20 runs whose systematic errors are stratified, each component of the references takes each
@@ -276,7 +180,7 @@ TEST(CoverageRun, TwoStandardUncertaintiesHoldTheTruthOverStratifiedRuns) {
     for (int run = 0; run < kRuns; ++run) {
         const Bench gonio;
         gonio.calibrate("stratum:" + std::to_string(run), 100 + run);
-        const Json samples = gonio.measureAll().scores;
+        const Json samples = measureAll(gonio).scores;
         double inside = 0, cells = 0;
         std::string row = "| " + std::to_string(run);
         for (std::size_t i = 0; i < samples.size(); ++i) {
