@@ -19,6 +19,7 @@ void readGroup(const BracketSums& sums, std::size_t group, const BlockAt& at, Gr
     const GroupSums& of = sums.groups[group];
     const auto dark = at.of(of.dark->mean);
     unpackTallies(at.of(of.tallies), dark, out);
+    out.single = of.frames == 1;
     const Linearity& bent = sums.linearity;
     if (!bent.identity()) straighten({bent.blackDn, bent.rangeDn, bent.coefficients}, dark, out);
     const auto hotPixels = of.dark->hotInRow(at.y);

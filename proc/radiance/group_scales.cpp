@@ -114,6 +114,7 @@ ScaleReport groupScales(const BracketSums& sums,
     const Systems systems = compared(sums, comparison);
     ScaleReport report;
     std::vector<double> uNominal;
+    uNominal.reserve(sums.groups.size());
     for (const GroupSums& group : sums.groups) uNominal.push_back(nominal.of(group));
     const std::vector<BrightnessOffset> offsets = systems.all.solve(uNominal);
     for (std::size_t g = 0; g < offsets.size(); ++g) {

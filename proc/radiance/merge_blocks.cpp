@@ -42,11 +42,16 @@ std::uint8_t capped(double count) {
 [[gnu::target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")]] void straighten(
     const Bend& bend, std::span<const float> dark, GroupBlock& block) {
     BlockOfPixels seen, dim;  // readings of the light and of the dark, in units of the range
-    const double slope = bend.coefficients.front();
+    const double slope = bend.coefficients.front(), scale = 1 / bend.range;
+    const BlockOfPixels& net = block.net;
+    for (std::size_t x = 0; x < kBlock; ++x) seen[x] = net[x];
+    if (!block.single) {  // a quotient takes as long as the rest
+        for (std::size_t x = 0; x < kBlock; ++x) seen[x] /= std::max(block.count[x], 1.0);
+    }
     for (std::size_t x = 0; x < dark.size(); ++x) {
         const double base = static_cast<double>(dark[x]) - bend.black;
-        dim[x] = base / bend.range;
-        seen[x] = (block.net[x] / std::max(block.count[x], 1.0) + base) / bend.range;
+        dim[x] = base * scale;
+        seen[x] = (seen[x] + base) * scale;
     }
     std::fill(seen.begin() + static_cast<std::ptrdiff_t>(dark.size()), seen.end(), 0.0);
     std::fill(dim.begin() + static_cast<std::ptrdiff_t>(dark.size()), dim.end(), 0.0);

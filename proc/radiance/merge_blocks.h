@@ -47,6 +47,7 @@ struct GroupBlock {
     BlockOfPixels net{};     ///< their sum less the dark, DN
     BlockOfPixels excess{};  ///< of a hot pixel: variance of a sample, electrons^2
     bool anyHot = false;     ///< false: `excess` says nothing, there is none
+    bool single = false;     ///< one frame: a pixel has one sample or none
 };
 
 /// Counts, and sums less `count` times the dark, of at most kBlock pixels.
