@@ -209,12 +209,20 @@ std::size_t countOf(const std::vector<Sightings>& leds) {
     return count;
 }
 
+/// Of all LEDs, one after the other.
+void residualsOf(const std::vector<Sightings>& leds,
+                 const Shape& shape,
+                 const Direction& normal,
+                 std::span<double> out) {
+    for (const Sightings& led : leds) {
+        residualsOf(led, shape, normal, out.first(led.size()));
+        out = out.subspan(led.size());
+    }
+}
+
 FitReport fitJoint(const std::vector<Sightings>& leds, double alpha) {
     const auto residuals = [&](std::span<const double> p, std::span<double> out) {
-        for (const Sightings& led : leds) {
-            residualsOf(led, shapeOf(p), normalOf(p[0], p[1]), out.first(led.size()));
-            out = out.subspan(led.size());
-        }
+        residualsOf(leds, shapeOf(p), normalOf(p[0], p[1]), out);
         return true;
     };
     return fit({.residuals = residuals,
@@ -225,15 +233,12 @@ FitReport fitJoint(const std::vector<Sightings>& leds, double alpha) {
                 .maxIterations = kMostIterations});
 }
 
-/// From where a fit ended without convergence, with f0 held there: it is next to nothing in a lobe
-/// that the LEDs' strengths have taken up, and a fit does not settle with it at its bound.
+/// From where a fit ended without convergence, with f0 held there: a lobe hardly shows it, as the
+/// LEDs' strengths are free.
 FitReport fitHeld(const std::vector<Sightings>& leds, const std::vector<double>& from) {
     const auto residuals = [&](std::span<const double> p, std::span<double> out) {
-        const Shape shape = shapeOf(std::array{p[0], p[1], p[2], from[3]});
-        for (const Sightings& led : leds) {
-            residualsOf(led, shape, normalOf(p[0], p[1]), out.first(led.size()));
-            out = out.subspan(led.size());
-        }
+        const std::array held{p[0], p[1], p[2], from[3]};
+        residualsOf(leds, shapeOf(held), normalOf(p[0], p[1]), out);
         return true;
     };
     FitReport report = fit({.residuals = residuals,

@@ -8,9 +8,9 @@
 // distribution of facets is the same on both sides and cancels, whatever its real shape.
 //
 // Where a cell that is needed is missing, the answer is missing for the same reason; where wo* is
-// beyond the field, it is Blocked. The
-// tilt's uncertainty and the waves go into u_systematic, corrected or not, by what they do to the
-// lobe and to cos(theta_o), which a matt sample shows too: each LED sees a normal of its own.
+// beyond the field, it is Blocked. The tilt's uncertainty and the waves go into u_systematic,
+// corrected or not, by what they do to the lobe and to cos(theta_o), which a matt sample shows too:
+// each LED sees a normal of its own.
 
 #include "proc/quality/tilt.h"
 

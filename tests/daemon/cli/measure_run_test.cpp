@@ -156,7 +156,7 @@ TEST(MeasureRun, WithoutSystematicErrorsNoiseExplainsTheRest) {
 
 TEST(MeasureRun, SameSeedGivesTheSameBytes) {
     const auto measured = [] {
-        const Bench gonio("[20, 320]");  // a third of the pictures
+        const Bench gonio("[20, 320]");  // two of the six exposures, for the time
         gonio.calibrate("random", 7);
         gonio({"sim", "place", kSamples[2]});
         gonio({"measure", "x", "--effort", "draft"});
