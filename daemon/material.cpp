@@ -26,9 +26,11 @@ std::vector<Radians> Material::incidences() const {
     return all;
 }
 
-Result<Material> openMaterial(const std::string& f, const std::filesystem::path& store) {
+Result<Material> openMaterial(const std::string& f,
+                              const std::filesystem::path& store,
+                              proc::EvalPath path) {
     if (f.starts_with(kModel)) {
-        auto model = proc::makeModel(std::string_view(f).substr(kModel.size()));
+        auto model = proc::makeModel(std::string_view(f).substr(kModel.size()), path);
         if (!model) return model.error();
         return Material{.kind = "model", .scatterer = std::move(*model)};
     }

@@ -9,6 +9,7 @@
 
 #include "proc/core/result.h"
 #include "proc/core/scatterer.h"
+#include "proc/models/analytic.h"
 #include "proc/table/sample_set.h"
 #include "proc/table/specular_table.h"
 
@@ -24,8 +25,10 @@ struct Material {
     [[nodiscard]] std::vector<Radians> incidences() const;
 };
 
-/// Usage error for a bad model, File error for a bad file; `store` is needed for sample:NAME only.
+/// Usage error for a bad model, File error for a bad file; `store` is needed for sample:NAME only,
+/// `path` is how a model is evaluated.
 [[nodiscard]] Result<Material> openMaterial(const std::string& f,
-                                            const std::filesystem::path& store);
+                                            const std::filesystem::path& store,
+                                            proc::EvalPath path = {});
 
 }  // namespace gonio::daemon

@@ -107,6 +107,8 @@ struct EvalOptions {
     std::string file;
     std::filesystem::path points;
     std::filesystem::path output;  ///< empty: stdout
+    std::string precision = "double";
+    std::string effort = "reference";
 };
 Result<void> eval(const CommonOptions& common, const EvalOptions& options);
 
@@ -137,5 +139,12 @@ struct TradeOptions {
 };
 /// What best plans take and achieve, by rig, LED levels, material and wanted uncertainty.
 Result<void> tradeAcquisition(const CommonOptions& common, const TradeOptions& options);
+
+struct TradeNumericsOptions {
+    std::filesystem::path reference;  ///< a folder of tables
+    std::filesystem::path output;     ///< a Markdown file; empty: none
+};
+/// The models' errors in float and double against reference values, by table, column and alpha.
+Result<void> tradeNumerics(const CommonOptions& common, const TradeNumericsOptions& options);
 
 }  // namespace gonio::daemon

@@ -100,8 +100,17 @@ std::string fileNameOf(std::string title) {
 }  // namespace
 
 Result<void> eval(const CommonOptions& common, const EvalOptions& options) {
-    const Result<Material> material = openMaterial(options.file, common.store);
+    const Result<Effort> effort = parseEffort(options.effort);
+    if (!effort) return effort.error().in("eval");
+    const Result<proc::Precision> precision = proc::parsePrecision(options.precision);
+    if (!precision) return precision.error().in("eval");
+    const Result<Material> material =
+        openMaterial(options.file, common.store, {.effort = *effort, .precision = *precision});
     if (!material) return material.error();
+    if (*precision == proc::Precision::Float && material->kind != "model") {
+        return Error{ErrorKind::Usage,
+                     "eval: '" + options.file + "': --precision float is for model:SPEC alone"};
+    }
     const Result<proc::Points> points = proc::readPoints(options.points);
     if (!points) return points.error();
     const std::vector<Answer> answers = answersAt(*material->scatterer, points->pairs);

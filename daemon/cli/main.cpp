@@ -41,6 +41,7 @@ struct Program {
     ExportOptions exported;
     PlotOptions plot;
     TradeOptions trade;
+    TradeNumericsOptions numerics;
     Command chosen;
     bool verbose = false;
 
@@ -259,6 +260,9 @@ void Program::addFiles() {
                     "CSV with theta_i,phi_i,theta_o,phi_o (degrees) or wi_x,...,wo_z")
         ->required();
     sub->add_option("-o,--output", eval.output, "write here instead of stdout");
+    sub->add_option("--precision", eval.precision, "float or double, of a model's evaluation");
+    sub->add_option(
+        "--effort", eval.effort, "draft, standard or reference, of a model's evaluation");
 
     sub = command(app, "convert", "write a file in another format", [this] {
         return daemon::convert(common, convert);
@@ -295,6 +299,14 @@ void Program::addEvidence() {
     sub->add_option("--levels", trade.levels, "numbers of LED levels, of 1, 2 and 3; default: all")
         ->check(CLI::Range(1, 3));
     sub->add_option("-o,--output", trade.output, "folder for the files");
+
+    sub = command(*parent,
+                  "numerics",
+                  "errors of the models in float and double against reference values",
+                  [this] { return tradeNumerics(common, numerics); });
+    sub->add_option("--reference", numerics.reference, "folder of tables, such as tests/reference")
+        ->required();
+    sub->add_option("-o,--output", numerics.output, "write the tables here as Markdown");
 }
 
 Program::Program() {

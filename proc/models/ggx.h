@@ -1,46 +1,31 @@
 #pragma once
 // Microfacet reflection with the GGX (Trowbridge-Reitz) distribution of normals [Walter2007, eq.
-// 33], anisotropic as [Heitz2014, eq. 84], Smith masking [Heitz2014], Schlick Fresnel
-// [Schlick1994]:
+// 33], anisotropic as [Heitz2014, eq. 84]:
 //   f = D(h) V(wi, wo) F(wi.h), V = G2 / (4 mu_i mu_o).
-// alpha in [1e-7, 1]; f0 in [0, 1]; f90 = 1. D comes from the unnormalised h = wi + wo by
-// components, so that it keeps its digits down to the smallest alpha. Reciprocal. Single scattering
-// only: a rough white metal loses energy (E = 1 - ln 2 = 0.307 at alpha 1, normal incidence).
+// alpha in [1e-7, 1]; masking and Fresnel in the forms of masking.h and surface_fresnel.h. D comes
+// from the unnormalised h = wi + wo by components, so that it keeps its digits down to the smallest
+// alpha. Reciprocal. Single scattering only: a rough white metal loses energy (E = 1 - ln 2 = 0.307
+// at alpha 1, normal incidence); multiple_scattering.h gives it back.
 
-#include "proc/models/analytic.h"
+#include "proc/models/masking.h"
+#include "proc/models/sampling.h"
+#include "proc/models/surface_fresnel.h"
 
 namespace gonio::proc {
 
-struct GgxAlpha {
-    double x = 0.1;
-    double y = 0.1;
-};
+template <class P>
+struct Ggx {
+    Alpha<P> alpha;
+    SurfaceFresnel<P> fresnel;
+    Masking masking = Masking::HeightCorrelated;
 
-enum class Masking {
-    HeightCorrelated,
-    Separable
-};
+    template <Effort E, class D>
+    [[nodiscard]] Bands<P> f(const Pair<D>& pair) const {
+        const Half<D> half(pair);
+        return fresnel.at(half.cosDiff) * P(ggxD(half, alpha) * ggxV(pair, alpha, masking));
+    }
 
-/// Distribution of normals, 1/sr, at the unnormalised half vector (z > 0).
-[[nodiscard]] double ggxD(const Eigen::Vector3d& half, GgxAlpha alpha);
-/// Smith's Lambda; 0 at the normal.
-[[nodiscard]] double ggxLambda(const Direction& w, GgxAlpha alpha);
-/// V = G2 / (4 mu_i mu_o), 1/sr; finite for mu > 0.
-[[nodiscard]] double ggxV(const LightView& pair, GgxAlpha alpha, Masking masking);
-/// f0 + (1 - f0)(1 - cosine)^5.
-[[nodiscard]] LedBands schlick(LedBands f0, double cosine);
-
-class Ggx : public AnalyticModel {
-public:
-    Ggx(GgxAlpha alpha, LedBands f0, Masking masking) : alpha_(alpha), f0_(f0), masking_(masking) {}
-
-protected:
-    [[nodiscard]] LedBands evaluate(const LightView& pair) const override;
-
-private:
-    GgxAlpha alpha_;
-    LedBands f0_;
-    Masking masking_;
+    [[nodiscard]] LobeMixture lobes() const { return {{1, GgxLobe{alpha}}}; }
 };
 
 }  // namespace gonio::proc

@@ -2,19 +2,18 @@
 // The Lambertian reflector: f = albedo / pi, for every pair of directions. Reciprocal; its
 // directional albedo is `albedo`, in [0, 1], at every incidence. [Lambert1760]
 
-#include "proc/models/analytic.h"
+#include "proc/models/kernel.h"
 
 namespace gonio::proc {
 
-class Lambert : public AnalyticModel {
-public:
-    explicit Lambert(LedBands albedo) : albedo_(albedo) {}
+template <class P>
+struct Lambert {
+    Bands<P> albedo;
 
-protected:
-    [[nodiscard]] LedBands evaluate(const LightView& pair) const override;
-
-private:
-    LedBands albedo_;
+    template <Effort E, class D>
+    [[nodiscard]] Bands<P> f(const Pair<D>&) const {
+        return albedo * P(1 / kPi);
+    }
 };
 
 }  // namespace gonio::proc

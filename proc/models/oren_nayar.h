@@ -4,24 +4,27 @@
 //   A = 1 - 0.5 s2 / (s2 + 0.33), B = 0.45 s2 / (s2 + 0.09), s2 = sigma^2, sigma in radians >= 0,
 //   alpha = max(theta_i, theta_o), beta = min(theta_i, theta_o).
 // The product of sine and tangent is computed as (xi xo + yi yo) / max(mu_i, mu_o): no acos, no 0/0
-// at the pole. Reciprocal. Directional albedo for albedo 1 reaches 1.015 near grazing (sigma 0.2):
-// the model itself is not strictly energy conserving. At sigma = 0: Lambert.
+// at the pole. Reciprocal. Directional albedo for albedo 1 is 0.62..1.015 (the most near grazing at
+// sigma 0.2): the model itself is not strictly energy conserving. At sigma = 0: Lambert.
 
-#include "proc/models/analytic.h"
+#include "proc/models/kernel.h"
 
 namespace gonio::proc {
 
-class OrenNayar : public AnalyticModel {
-public:
-    OrenNayar(LedBands albedo, Radians sigma);
+template <class P>
+struct OrenNayar {
+    Bands<P> albedo;
+    P sigma;
 
-protected:
-    [[nodiscard]] LedBands evaluate(const LightView& pair) const override;
-
-private:
-    LedBands albedo_;
-    double a_;
-    double b_;
+    template <Effort E, class D>
+    [[nodiscard]] Bands<P> f(const Pair<D>& pair) const {
+        const P s2 = sigma * sigma;
+        const P a = P(1) - P(0.5) * s2 / (s2 + P(0.33));
+        const P b = P(0.45) * s2 / (s2 + P(0.09));
+        const D across = pair.in.x * pair.out.x + pair.in.y * pair.out.y;
+        const D sinTan = std::max(D(0), across) / std::max(pair.in.z, pair.out.z);
+        return albedo * P((a + b * sinTan) * P(1 / kPi));
+    }
 };
 
 }  // namespace gonio::proc

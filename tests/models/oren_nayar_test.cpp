@@ -13,7 +13,8 @@ Direction at(double theta, double phi = 0) {
 }
 
 double green(double sigma, const LightView& pair) {
-    return OrenNayar(LedBands::all(1), Radians(sigma)).answer(pair).f[Band::G];
+    const OrenNayar<double> model{Bands<double>::all(1), sigma};
+    return model.f<Effort::Reference>(pairOf<double>(pair)).g;
 }
 
 TEST(OrenNayarModel, IsLambertAtSigmaZero) {

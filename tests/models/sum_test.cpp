@@ -5,28 +5,13 @@
 #include <cmath>
 #include <utility>
 
-#include "proc/models/lambert.h"
+#include "proc/models/spec.h"
 
 namespace gonio::proc {
 namespace {
 
-/// Answers nothing, and says why.
-class Silent : public Scatterer {
-public:
-    explicit Silent(Flag why) : why_(why) {}
-    [[nodiscard]] Answer answer(const LightView&) const override {
-        return Answer::none({why_}, Source::Measured);
-    }
-
-private:
-    Flag why_;
-};
-
-template <class... Parts>
-Sum sumOf(Parts... parts) {
-    std::vector<std::unique_ptr<const Scatterer>> list;
-    (list.push_back(std::make_unique<Parts>(std::move(parts))), ...);
-    return Sum(std::move(list));
+std::unique_ptr<const AnalyticModel> model(const std::string& spec) {
+    return std::move(*makeModel(spec));
 }
 
 const LightView kPair{Direction::fromSpherical(20_deg, 0_deg), Direction()};
@@ -34,23 +19,25 @@ const LightView kPair{Direction::fromSpherical(20_deg, 0_deg), Direction()};
 TEST(SumModel, IsTheSumOfItsPartsInEachBand) {
     const LedBands a{{0.1, 0.2, 0.3}};
     const LedBands b{{0.4, 0, 0.5}};
-    const Answer answer = sumOf(Lambert(a), Lambert(b)).answer(kPair);
+    const Answer answer =
+        model("lambert,albedo=0.1/0.2/0.3+lambert,albedo=0.4/0/0.5")->answer(kPair);
     for (Band band : kBands) EXPECT_DOUBLE_EQ(answer.f[band], (a[band] + b[band]) / kPi);
     EXPECT_EQ(answer.source, Source::Analytic);
     EXPECT_EQ(answer.flags, Flags{});
 }
 
 TEST(SumModel, OfOnePartIsThatPart) {
-    const Lambert part(LedBands::all(0.5));
-    EXPECT_EQ(sumOf(part).answer(kPair).f, part.answer(kPair).f);
+    std::vector<std::unique_ptr<const AnalyticModel>> parts;
+    parts.push_back(model("ggx,alpha=0.2,f0=0.5"));
+    const LedBands alone = parts.front()->answer(kPair).f;
+    EXPECT_EQ(Sum(std::move(parts)).answer(kPair).f, alone);
 }
 
-TEST(SumModel, AnswersNoneWhereAnyPartDoesAndJoinsTheFlags) {
-    const Lambert part(LedBands::all(0.5));
-    EXPECT_TRUE(std::isnan(sumOf(part, Silent(Flag::Blocked)).answer(kPair).f[Band::R]));
-    const Answer answer = sumOf(Silent(Flag::Blocked), part, Silent(Flag::Saturated)).answer(kPair);
-    EXPECT_FALSE(answer.present());
-    EXPECT_EQ(answer.flags, (Flags{Flag::Blocked, Flag::Saturated}));
+TEST(SumModel, AnswersNoneBelowTheHorizon) {
+    const auto sum = model("lambert,albedo=0.1+ggx,alpha=0.2,f0=0.5");
+    const Answer below = sum->answer({Direction(), *Direction::fromVector({1, 0, -0.1})});
+    EXPECT_FALSE(below.present());
+    EXPECT_EQ(below.flags, Flags{Flag::BelowHorizon});
 }
 
 }  // namespace

@@ -1,38 +1,25 @@
 #pragma once
-// Rows of the 60-digit reference tables; empty, with one line said, where they are absent.
+// The 60-digit reference tables of tests/reference.
+
+#include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
-#include <iostream>
-#include <sstream>
 #include <string>
-#include <vector>
 
-#include "proc/core/number_text.h"
+#include "proc/core/number_table.h"
 
 namespace gonio::test {
 
-inline std::vector<std::vector<double>> referenceRows(const std::string& table) {
-    const std::filesystem::path file =
-        std::filesystem::path(GONIO_DATA_DIR) / "reference-brdf" / (table + ".csv");
-    std::ifstream in(file);
-    if (!in) {
-        std::cout << "skipped: " << table << ": no " << file.filename().string()
-                  << " in GONIO_DATA_DIR\n";
-        return {};
-    }
-    std::vector<std::vector<double>> rows;
-    std::string line;
-    std::getline(in, line);  // names of the columns
-    while (std::getline(in, line)) {
-        std::istringstream cells(line);
-        std::vector<double> row;
-        for (std::string cell; std::getline(cells, cell, ',');) {
-            row.push_back(gonio::parseDouble(cell).value());
-        }
-        rows.push_back(row);
-    }
-    return rows;
+inline std::filesystem::path referenceFolder() {
+    return std::filesystem::path(GONIO_SOURCE_DIR) / "tests" / "reference";
+}
+
+/// Names, and rows of inputs and outputs; a failed test and no rows where it cannot be read.
+inline NumberTable referenceTable(const std::string& name) {
+    auto table = readNumberTable(referenceFolder() / (name + ".csv"));
+    if (table) return std::move(*table);
+    ADD_FAILURE() << table.error().message;
+    return {};
 }
 
 }  // namespace gonio::test

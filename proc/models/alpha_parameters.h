@@ -1,0 +1,33 @@
+#pragma once
+// Width and Fresnel term of a microfacet lobe as a spec gives them.
+
+#include "proc/models/catalogue.h"
+#include "proc/models/surface_fresnel.h"
+
+namespace gonio::proc {
+
+struct AlphaNumbers {
+    double x;
+    double y;
+
+    [[nodiscard]] bool isotropic() const { return x == y; }
+};
+/// roughness (alpha = roughness^2), alpha_x and alpha_y, or alpha.
+[[nodiscard]] AlphaNumbers alphaOf(SpecParameters& p);
+
+struct FresnelNumbers {
+    FresnelForm form = FresnelForm::Schlick;
+    LedBands f0;
+    LedBands eta;
+    LedBands k;
+
+    template <class P>
+    [[nodiscard]] SurfaceFresnel<P> as() const {
+        return {
+            .form = form, .f0 = Bands<P>::of(f0), .eta = Bands<P>::of(eta), .k = Bands<P>::of(k)};
+    }
+};
+/// f0, or eta with or without k; fresnel=schlick|exact.
+[[nodiscard]] FresnelNumbers fresnelOf(SpecParameters& p);
+
+}  // namespace gonio::proc
