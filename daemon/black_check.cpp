@@ -31,6 +31,7 @@ std::optional<BlackCheck> checkBlack(const RigReferences& references,
     if (references.zero == nullptr) return std::nullopt;
     const proc::ReferenceTable& black = *references.certified.black;
     std::vector<double> measured, certified;
+    const std::vector<DirectionSpread> exact(proc::CellGrid::count());
     for (std::size_t led = 0; led < references.black.signals.size(); ++led) {
         const Direction wi = Direction::fromSpherical(ledAngles[led], Radians(0));
         // One band is enough: a dirty tile or trap is so in all.
@@ -40,7 +41,7 @@ std::optional<BlackCheck> checkBlack(const RigReferences& references,
                             referencesOf(references, {static_cast<int>(led), band}),
                             wi,
                             band,
-                            {.angle = [](std::size_t) { return Radians(0); }});
+                            {.angle = exact});
         for (std::size_t cell = 0; cell < seen.samples.size(); ++cell) {
             if (!seen.samples.present(cell)) continue;
             measured.push_back(seen.samples.f[cell]);

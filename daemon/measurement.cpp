@@ -166,10 +166,10 @@ std::optional<double> achieved(const proc::SampleSet& set) {
 }
 
 /// Of each cell: standard uncertainty of where it lies, per axis; half a turn beyond the field.
-using CellAngles = std::vector<Radians>;
+using CellAngles = std::vector<DirectionSpread>;
 
-CellAngles overField(const std::function<Radians(const Direction&)>& uAngle) {
-    CellAngles angles(proc::CellGrid::count(), Radians(kPi));
+CellAngles overField(const std::function<DirectionSpread(const Direction&)>& uAngle) {
+    CellAngles angles(proc::CellGrid::count(), DirectionSpread::even(Radians(kPi)));
     parallelFor(angles.size(), [&](IndexRange cells) {
         for (std::size_t cell = cells.begin; cell < cells.end; ++cell) {
             const Direction wo = proc::CellGrid::centre(cell);
@@ -186,9 +186,8 @@ proc::SampleSet asIfFlat(const PlacementSignals& signals,
                          const std::vector<CellAngles>& uAngle,
                          const proc::MonteCarlo& monteCarlo) {
     const int spots = references.lens.spots;
-    proc::AngleUncertainty ofLed;
     proc::RigUncertainty rig{
-        .angle = ofLed,
+        .angle = {},
         .ledDrift = references.profile.ledDrift,
         .exposureRatio = references.profile.exposureRatio,
         .linearity = references.profile.linearity,
@@ -197,7 +196,7 @@ proc::SampleSet asIfFlat(const PlacementSignals& signals,
     Json budgets = Json::array();
     for (std::size_t led = 0; led < signals.size(); ++led) {
         proc::LedTable table{.incidence = ledAngles[led], .bands = {}};
-        ofLed = [&](std::size_t cell) { return uAngle[led][cell]; };
+        rig.angle = uAngle[led];
         for (Band band : kBands) {
             const std::size_t b = index(band);
             rig.ledDrift = std::hypot(references.profile.ledDrift, references.uMonitor[b]);
@@ -307,8 +306,8 @@ proc::SampleSet calibrateSample(const PlacementSignals& signals,
     const proc::DirectionUncertainty uAngle(lens);
     const std::vector<CellAngles> ofMap(signals.size(), overField(uAngle));
     proc::SampleSet set = asIfFlat(signals, ledAngles, references, ofMap, monteCarlo);
-    const Radians uLens = uAngle(Direction::fromSpherical(kTypicalView, Radians(0)));
-    const std::optional<proc::TiltEstimate> tilt = proc::estimateTilt(set, uLens);
+    const Radians uLens = uAngle(Direction::fromSpherical(kTypicalView, Radians(0))).perAxis();
+    std::optional<proc::TiltEstimate> tilt = proc::estimateTilt(set, uLens);
     const PoseLimits& limits = references.profile.quality.pose;
     if (worthCorrecting(tilt, limits)) {
         const proc::SeenDirection seen(lens, ledAngles, *tilt);
@@ -318,6 +317,7 @@ proc::SampleSet calibrateSample(const PlacementSignals& signals,
                 overField([&](const Direction& wo) { return seen.uncertainty(led, wo); }));
         }
         set = asIfFlat(signals, ledAngles, references, ofLobes, monteCarlo);
+        tilt->waviness = seen.wavesBeyondTheMap(*tilt);
     }
     info.budgetJson = std::move(set.info.budgetJson);
     noteBlackCheck(checkBlack(references, ledAngles), info);

@@ -71,19 +71,26 @@ double LocalShape::slope(double f) const {
     return std::hypot(theta.slope, phi.slope) * (logarithmic ? std::abs(f) : 1);
 }
 
+double LocalShape::firstOrder(double f, const DirectionSpread& u) const {
+    return std::hypot(theta.slope * u.alongTheta.value(), phi.slope * u.alongPhi.value()) *
+           (logarithmic ? std::abs(f) : 1);
+}
+
 double LocalShape::at(double f, double alongTheta, double alongPhi) const {
     const double change = (theta.slope + theta.curvature / 2 * alongTheta) * alongTheta +
                           (phi.slope + phi.curvature / 2 * alongPhi) * alongPhi;
     return logarithmic ? f * std::exp(change) : f + change;
 }
 
-double LocalShape::secondOrder(double f, double u) const {
+// For independent normal x and y: <((a x^2 + b y^2) / 2)^2>.
+double LocalShape::secondOrder(double f, const DirectionSpread& u) const {
     // Of f itself: (ln f)'' + (ln f)'^2 in units of f.
     const auto second = [&](const LocalCurve& along) {
         return logarithmic ? f * (along.curvature + along.slope * along.slope) : along.curvature;
     };
-    const double a = second(theta), b = second(phi);
-    return u * u * std::sqrt((a + b) * (a + b) / 4 + (a * a + b * b) / 2);
+    const double a = second(theta) * u.alongTheta.value() * u.alongTheta.value();
+    const double b = second(phi) * u.alongPhi.value() * u.alongPhi.value();
+    return std::sqrt((a + b) * (a + b) / 4 + (a * a + b * b) / 2);
 }
 
 LocalShape localShape(const CellSamples& cells, std::size_t cell) {

@@ -11,6 +11,7 @@
 #include <cstddef>
 
 #include "proc/calibrate/cell_samples.h"
+#include "proc/core/direction.h"
 
 namespace gonio::proc {
 
@@ -26,11 +27,13 @@ struct LocalShape {
 
     /// |grad f| in 1/sr per radian at a cell of this f.
     [[nodiscard]] double slope(double f) const;
+    /// Of f by first order, for errors of the direction of size `u`.
+    [[nodiscard]] double firstOrder(double f, const DirectionSpread& u) const;
     /// f at so many radians from the cell's centre.
     [[nodiscard]] double at(double f, double alongTheta, double alongPhi) const;
-    /// Root mean square, over errors of the direction of size u about either axis, of what the
-    /// second order adds to f.
-    [[nodiscard]] double secondOrder(double f, double u) const;
+    /// Root mean square, over errors of the direction of size u, of what the second order adds to
+    /// f.
+    [[nodiscard]] double secondOrder(double f, const DirectionSpread& u) const;
 };
 
 /// Reads f, uRandom and flags of the cell, which is present, and its neighbours.

@@ -41,7 +41,8 @@ public:
         }
         drawn.fWhite *= 1 + best_.uWhite * normal_(random_);
         drawn.fBlack += best_.uBlack * normal_(random_);
-        const double x = best_.uAngle * normal_(random_), y = best_.uAngle * normal_(random_);
+        const double x = best_.uAngle.alongTheta.value() * normal_(random_);
+        const double y = best_.uAngle.alongPhi.value() * normal_(random_);
         return best_.shape.at(drawn.f(), x, y) + best_.uElse * normal_(random_);
     }
 

@@ -27,8 +27,8 @@ struct CellInputs {
     double uWhite = 0;              ///< relative
     double uBlack = 0;              ///< 1/sr
     double uLight = 0;              ///< relative, of each capture
-    double uAngle = 0;              ///< radians, about either axis
-    double uElse = 0;               ///< 1/sr: all that first order knows and this does not
+    DirectionSpread uAngle{};
+    double uElse = 0;  ///< 1/sr: all that first order knows and this does not
     LocalShape shape;
 
     /// fb + (fw - fb) (S - S_b) / (S_w - S_b).

@@ -65,10 +65,10 @@ double medianNoise(const CellSignal& signal, const CellSamples& samples) {
     return relative.empty() ? 0 : median(std::move(relative));
 }
 
-double medianDegrees(const AngleUncertainty& angle, const CellSamples& samples) {
+double medianDegrees(AngleUncertainty angle, const CellSamples& samples) {
     std::vector<double> degrees;
     for (std::size_t cell = 0; cell < samples.size(); ++cell) {
-        if (samples.present(cell)) degrees.push_back(angle(cell).degrees());
+        if (samples.present(cell)) degrees.push_back(angle[cell].perAxis().degrees());
     }
     return degrees.empty() ? 0 : median(std::move(degrees));
 }
@@ -124,7 +124,7 @@ struct Measurement {
                 .uWhite = std::hypot(white.uCommon, white.uPerDirection),
                 .uBlack = certified[cell].uBlack,
                 .uLight = std::hypot(rig.ledDrift, rig.exposureRatio, rig.linearity),
-                .uAngle = rig.angle(cell).value(),
+                .uAngle = rig.angle[cell],
                 .uElse = 0,
                 .shape = localShape(samples, cell)};
     }
@@ -216,7 +216,7 @@ Calibrated calibrate(const CellSignal& sample,
             if (!out.present(cell)) continue;
             Contributions& u = contributions[cell];
             CellInputs inputs = measurement.inputsOf(cell, out);
-            u[Geometry] = inputs.shape.slope(out.f[cell]) * inputs.uAngle;
+            u[Geometry] = inputs.shape.firstOrder(out.f[cell], inputs.uAngle);
             out.uSystematic[cell] = quadrature(u, WhiteCommon, ComponentCount);
             const double total = std::hypot(out.uRandom[cell], out.uSystematic[cell]);
             if (monteCarlo.draws == 0 && !firstOrderFails(inputs, total)) continue;

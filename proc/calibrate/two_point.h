@@ -27,8 +27,8 @@
 // Negative f survives; |f| < 2 u_random is flagged BelowNoise.
 
 #include <cstddef>
-#include <functional>
 #include <optional>
+#include <span>
 
 #include "proc/calibrate/budget.h"
 #include "proc/calibrate/cell_samples.h"
@@ -47,12 +47,12 @@ struct References {
     const ReferenceTable& black;
 };
 
-/// Standard uncertainty of the direction of a cell of CellGrid, per axis.
-using AngleUncertainty = std::function<Radians(std::size_t cell)>;
+/// Standard uncertainty of the direction of each cell of CellGrid.
+using AngleUncertainty = std::span<const DirectionSpread>;
 
 /// What the rig adds to the uncertainty by itself.
 struct RigUncertainty {
-    const AngleUncertainty& angle;
+    AngleUncertainty angle;
     double ledDrift = 0;                   ///< d: relative standard size, k = 1
     double exposureRatio = 0;              ///< relative, k = 1: of an effective exposure time
     double linearity = 0;                  ///< relative, k = 1: what is left of the non-linearity

@@ -45,6 +45,18 @@ struct LightView {
     Direction out;
 };
 
+/// Standard uncertainty of a direction along theta and along phi, both as angles on the sphere.
+struct DirectionSpread {
+    Radians alongTheta;
+    Radians alongPhi;
+
+    [[nodiscard]] static DirectionSpread even(Radians perAxis) { return {perAxis, perAxis}; }
+    /// Root mean square of both.
+    [[nodiscard]] Radians perAxis() const {
+        return Radians(std::hypot(alongTheta.value(), alongPhi.value()) / std::sqrt(2.0));
+    }
+};
+
 /// Angle between two directions, by the half-chord form: exact near 0 and near pi.
 [[nodiscard]] Radians angleBetween(const LightView& pair);
 

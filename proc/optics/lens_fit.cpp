@@ -74,14 +74,21 @@ std::optional<DirectionSlopes> DirectionUncertainty::slopes(const Direction& wo)
     return slopes;
 }
 
-Radians DirectionUncertainty::ofSlopes(const DirectionSlopes& slopes) const {
-    // The trace is the sum of both tangential variances.
-    return Radians(std::sqrt(0.5 * (slopes * covariance_ * slopes.transpose()).trace()));
+DirectionSpread DirectionUncertainty::ofSlopes(const Direction& wo,
+                                               const DirectionSlopes& slopes) const {
+    const double phi = wo.phi().value();
+    const Eigen::Vector3d alongPhi(-std::sin(phi), std::cos(phi), 0);
+    const Eigen::Vector3d alongTheta = alongPhi.cross(wo.vector());
+    const auto along = [&](const Eigen::Vector3d& axis) {
+        const Eigen::RowVectorXd pull = axis.transpose() * slopes;
+        return Radians(std::sqrt(std::max(0.0, (pull * covariance_ * pull.transpose()).value())));
+    };
+    return {.alongTheta = along(alongTheta), .alongPhi = along(alongPhi)};
 }
 
-Radians DirectionUncertainty::operator()(const Direction& wo) const {
+DirectionSpread DirectionUncertainty::operator()(const Direction& wo) const {
     const std::optional<DirectionSlopes> known = slopes(wo);
-    return known ? ofSlopes(*known) : Radians(kPi);
+    return known ? ofSlopes(wo, *known) : DirectionSpread::even(Radians(kPi));
 }
 
 Result<LensFit> fitLens(std::span<const MirrorSpot> spots,

@@ -33,17 +33,18 @@ struct LensFit {
 /// d direction / d parameter of a map, in the order of LensMap::values().
 using DirectionSlopes = Eigen::Matrix<double, 3, static_cast<int>(LensMap::kParameters)>;
 
-/// Standard uncertainty of the direction that a fitted map gives where wo falls, per axis: the
-/// covariance through numerical slopes. Half a turn where the map gives none.
+/// Standard uncertainty of the direction that a fitted map gives where wo falls: the covariance
+/// through numerical slopes. Half a turn where the map gives none.
 class DirectionUncertainty {
 public:
     explicit DirectionUncertainty(const LensFit& fit);
-    [[nodiscard]] Radians operator()(const Direction& wo) const;
+    [[nodiscard]] DirectionSpread operator()(const Direction& wo) const;
 
     /// Of the direction that the map gives where wo falls; empty where it gives none.
     [[nodiscard]] std::optional<DirectionSlopes> slopes(const Direction& wo) const;
-    /// Per axis, of a direction that depends on the parameters like that.
-    [[nodiscard]] Radians ofSlopes(const DirectionSlopes& slopes) const;
+    /// Of a direction wo that depends on the parameters like that.
+    [[nodiscard]] DirectionSpread ofSlopes(const Direction& wo,
+                                           const DirectionSlopes& slopes) const;
 
 private:
     struct Slope {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 namespace gonio::proc {
@@ -43,7 +44,7 @@ SeenDirection::SeenDirection(const LensFit& lens,
         if (led >= estimate.leds.size() || !estimate.leds[led]) continue;
         const auto lobe = Direction::fromVector(lobes_[led].at);
         const auto slopes = lobe ? lens_.slopes(*lobe) : std::nullopt;
-        const double u = estimate.leds[led]->uSeen.value();
+        const double u = estimate.leds[led]->uSeen.perAxis().value();
         if (!slopes || !(u > 0)) continue;
         weights += turns[led].transpose() * turns[led] / (u * u);
         pull -= turns[led].transpose() * *slopes / (u * u);
@@ -54,13 +55,30 @@ SeenDirection::SeenDirection(const LensFit& lens,
         lobes_[led].taken = turns[led] * solver.solve(pull);
 }
 
-Radians SeenDirection::uncertainty(std::size_t led, const Direction& wo) const {
+DirectionSpread SeenDirection::uncertainty(std::size_t led, const Direction& wo) const {
     const auto slopes = lens_.slopes(wo);
-    if (!slopes) return Radians(kPi);
+    if (!slopes) return DirectionSpread::even(Radians(kPi));
     const Lobe& lobe = lobes_[led];
     const Eigen::Matrix3d turn =
         Eigen::Quaterniond::FromTwoVectors(lobe.at, wo.vector()).toRotationMatrix();
-    return lens_.ofSlopes(*slopes + turn * lobe.taken);
+    return lens_.ofSlopes(wo, *slopes + turn * lobe.taken);
+}
+
+// A lobe that is seen e off its place shows a normal that is e / 2 off.
+Radians SeenDirection::wavesBeyondTheMap(const TiltEstimate& estimate) const {
+    double squares = 0;
+    int count = 0;
+    for (std::size_t led = 0; led < lobes_.size(); ++led) {
+        if (led >= estimate.leds.size() || !estimate.leds[led]) continue;
+        const auto lobe = Direction::fromVector(lobes_[led].at);
+        if (!lobe || !lobe->aboveHorizon()) continue;
+        const double perAxis = uncertainty(led, *lobe).perAxis().value() / 2;
+        squares += 2 * perAxis * perAxis;
+        ++count;
+    }
+    const double waves = estimate.waviness.value();
+    const double map = count > 0 ? squares / count : 0;
+    return Radians(std::sqrt(std::max(0.0, waves * waves - map)));
 }
 
 }  // namespace gonio::proc

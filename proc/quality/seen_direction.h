@@ -22,8 +22,12 @@ public:
                   const std::vector<Radians>& incidences,
                   const TiltEstimate& estimate);
 
-    /// Standard uncertainty per axis, of an LED's cell at wo. Half a turn where the map gives none.
-    [[nodiscard]] Radians uncertainty(std::size_t led, const Direction& wo) const;
+    /// Of an LED's cell at wo. Half a turn where the map gives none.
+    [[nodiscard]] DirectionSpread uncertainty(std::size_t led, const Direction& wo) const;
+
+    /// What is left of the waviness that an estimate found when the lens map's error, which shows
+    /// lobes apart as waves do, is taken off: that is in `uncertainty`.
+    [[nodiscard]] Radians wavesBeyondTheMap(const TiltEstimate& estimate) const;
 
 private:
     DirectionUncertainty lens_;

@@ -61,14 +61,13 @@ struct Shape {
 Parts partsOf(const Shape& shape, const Eigen::Matrix3d& turn, const LightView& pair) {
     const Eigen::Vector3d wi = turn * pair.in.vector(), wo = turn * pair.out.vector();
     if (wi.z() <= 0 || wo.z() <= 0) return {};
-    const GgxAlpha alpha{shape.alpha, shape.alpha};
-    const LightView own{*Direction::fromVector(wi), *Direction::fromVector(wo)};
-    const Eigen::Vector3d half = wi + wo;
-    const double cosine = std::clamp(wi.dot(half) / half.norm(), 0.0, 1.0);
+    const auto alpha = Alpha<double>::isotropic(shape.alpha);
+    const Pair<double> own{{wi.x(), wi.y(), wi.z()}, {wo.x(), wo.y(), wo.z()}};
+    const Half<double> half(own);
     const double view = wo.z() / pair.out.z();
     return {view / kPi,
             view * ggxD(half, alpha) * ggxV(own, alpha, Masking::HeightCorrelated) *
-                schlick(LedBands::all(shape.f0), cosine)[Band::G]};
+                schlick(shape.f0, 1.0, half.cosDiff)};
 }
 
 std::optional<Sighting> sightingAt(const LedTable& led, std::size_t cell) {
@@ -320,28 +319,33 @@ double misfitOf(std::span<const Sighting> sightings,
     return std::sqrt(std::max(0.0, squares) / std::max(1, count));
 }
 
-/// Of either axis, by how far the cells really scatter about the fit.
-Radians uFitOf(const FitReport& report) {
-    return Radians(report.rms *
-                   std::sqrt(std::max(report.covariance(0, 0), report.covariance(1, 1))));
+/// By how far the cells really scatter about the fit.
+TurnUncertainty uFitOf(const FitReport& report) {
+    return {Radians(report.rms * std::sqrt(report.covariance(0, 0))),
+            Radians(report.rms * std::sqrt(report.covariance(1, 1)))};
 }
 
 /// What a misfit may do to it.
 Radians uMisfitOf(double misfit, double alpha) { return Radians(misfit * alpha / 4); }
 
 /// With the lens map's part.
-Normal uncertain(const Direction& normal, Radians uFit, Radians uMisfit, Radians uAngle) {
-    const double seen = std::hypot(uFit.value(), uMisfit.value());
+Normal uncertain(const Direction& normal,
+                 const TurnUncertainty& uFit,
+                 Radians uMisfit,
+                 Radians uAngle) {
+    const auto with = [&](Radians u) { return Radians(std::hypot(u.value(), uMisfit.value())); };
+    const TurnUncertainty seen{with(uFit.towardX), with(uFit.towardY)};
     return {.direction = normal,
-            .u = Radians(std::hypot(seen, uAngle.value())),
-            .uSeen = Radians(seen)};
+            .u = Radians(std::hypot(seen.larger().value(), uAngle.value())),
+            .uSeen = seen};
 }
 
 /// One LED's own normal, and of its uncertainty what is the LED's alone: the lens map moves those
 /// of all LEDs alike.
 struct OwnNormal {
     Normal normal;
-    Radians uFit, uMisfit;
+    TurnUncertainty uFit;
+    Radians uMisfit;
 };
 
 /// The lobe's width is held.
@@ -363,7 +367,7 @@ std::optional<OwnNormal> normalSeenBy(std::span<const Sighting> sightings,
     if (!report.ok()) return std::nullopt;
     const Direction own = normalOf(report.params[0], report.params[1]);
     const double misfit = misfitOf(sightings, strengths(sightings, shape, toSurface(own)), own);
-    const Radians uFit = uFitOf(report);
+    const TurnUncertainty uFit = uFitOf(report);
     const Radians uMisfit = uMisfitOf(misfit, shape.alpha);
     const Normal normal = uncertain(own, uFit, uMisfit, uAngle);
     if (normal.u.value() > kWorstFit) return std::nullopt;
@@ -390,7 +394,7 @@ Radians wavinessOf(std::span<const std::optional<OwnNormal>> leds, const Directi
     for (const auto& led : leds) {
         if (!led) continue;
         const double apart = angleBetween({led->normal.direction, joint}).value();
-        const double uFit = led->uFit.value(), uMisfit = led->uMisfit.value();
+        const double uFit = led->uFit.perAxis().value(), uMisfit = led->uMisfit.value();
         squares += apart * apart - 2 * uFit * uFit - uMisfit * uMisfit;
         ++count;
     }
@@ -400,7 +404,7 @@ Radians wavinessOf(std::span<const std::optional<OwnNormal>> leds, const Directi
 /// There is a lobe, and how it lies is not to be seen.
 TiltEstimate undetermined(TiltEstimate estimate) {
     estimate.determined = false;
-    estimate.joint = {Direction(), Radians(kSeated), Radians(kSeated)};
+    estimate.joint = {Direction(), Radians(kSeated), TurnUncertainty::even(Radians(kSeated))};
     estimate.leds.assign(estimate.lobes.size(), std::nullopt);
     return estimate;
 }

@@ -16,6 +16,8 @@
 // along z, within a quarter of a degree (k = 1, as rigs are seated), not determined. A lobe
 // narrower than the cells (alpha < 0.02, 1 degree) is located to a fraction of a cell only.
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -34,12 +36,24 @@ struct TiltLobe {
 };
 
 /// A normal, and its standard uncertainty about either axis (k = 1).
+/// Standard uncertainty of a normal that is turned toward x and toward y.
+struct TurnUncertainty {
+    Radians towardX, towardY;
+
+    [[nodiscard]] static TurnUncertainty even(Radians u) { return {u, u}; }
+    [[nodiscard]] Radians larger() const { return std::max(towardX, towardY); }
+    /// Root mean square of both.
+    [[nodiscard]] Radians perAxis() const {
+        return Radians(std::hypot(towardX.value(), towardY.value()) / std::sqrt(2.0));
+    }
+};
+
 struct Normal {
     Direction direction;
-    Radians u;
+    Radians u;  ///< per axis, the larger
     /// Without the lens map's part: against where the lobes were seen. What f is off by on a flank
     /// is this and the direction of the cell, which is in the budget by itself.
-    Radians uSeen;
+    TurnUncertainty uSeen;
     [[nodiscard]] Radians tilt() const { return direction.theta(); }
 };
 

@@ -65,25 +65,29 @@ Flags lostBy(const Answer& needed) {
     return why == Flags{} ? Flags{Flag::Blocked} : why;
 }
 
-/// Of the normal that one LED sees, about either axis: the joint one's, and the waves. Their root
-/// mean square angle is that about both axes together.
-Radians uOfOneLed(const TiltEstimate& estimate) {
-    return Radians(
-        std::hypot(estimate.joint.uSeen.value(), estimate.waviness.value() / std::numbers::sqrt2));
+/// Of the normal that one LED sees: the joint one's, and the waves. Their root mean square angle is
+/// that of both axes together. `more` is added to either axis.
+TurnUncertainty uOfOneLed(const TiltEstimate& estimate, Radians more = Radians(0)) {
+    const double waves = estimate.waviness.value() / std::numbers::sqrt2;
+    const auto with = [&](Radians u) {
+        return Radians(std::hypot(u.value(), waves, more.value()));
+    };
+    return {with(estimate.joint.uSeen.towardX), with(estimate.joint.uSeen.towardY)};
 }
 
-/// Adds what a tilt of u (k = 1) about each axis does to f, root mean square: by three points of a
-/// Gauss-Hermite rule about each axis, which is the slope times u on a flank, and right where the
-/// top of a lobe has none, too.
-void widen(CellSamples& cells, const Place& place, Radians u) {
+/// Adds what turns of u (k = 1) do to f, root mean square: by three points of a Gauss-Hermite rule
+/// for each axis, which is the slope times u on a flank, and right where the top of a lobe has
+/// none, too.
+void widen(CellSamples& cells, const Place& place, const TurnUncertainty& u) {
     const double here = tiltedLobe(place.lobe, Direction(), place.pair);
     if (!(here > 0)) return;
-    const double step = std::tan(std::numbers::sqrt3 * u.value());
+    const double stepX = std::tan(std::numbers::sqrt3 * u.towardX.value());
+    const double stepY = std::tan(std::numbers::sqrt3 * u.towardY.value());
     const auto off = [&](double x, double y) {
         return tiltedLobe(place.lobe, *Direction::fromVector({x, y, 1}), place.pair) / here - 1;
     };
-    const double relative = std::hypot(std::hypot(off(step, 0), off(-step, 0)),
-                                       std::hypot(off(0, step), off(0, -step))) /
+    const double relative = std::hypot(std::hypot(off(stepX, 0), off(-stepX, 0)),
+                                       std::hypot(off(0, stepY), off(0, -stepY))) /
                             std::sqrt(6.0);
     double& systematic = cells.uSystematic[place.cell];
     systematic = std::hypot(systematic, std::abs(cells.f[place.cell]) * relative);
@@ -115,7 +119,7 @@ SampleSet tiltCorrected(const SampleSet& sample, const TiltEstimate& estimate) {
     const Eigen::Matrix3d turn = Eigen::Quaterniond::FromTwoVectors(
                                      Eigen::Vector3d::UnitZ(), estimate.joint.direction.vector())
                                      .toRotationMatrix();
-    const Radians u = uOfOneLed(estimate);
+    const TurnUncertainty u = uOfOneLed(estimate);
     SampleSet corrected = sample;
     forEachCell(corrected, estimate, [&](CellSamples& cells, const Place& place) {
         const auto at = seenAt(place.pair, turn);
@@ -136,7 +140,7 @@ SampleSet tiltCorrected(const SampleSet& sample, const TiltEstimate& estimate) {
 }
 
 SampleSet withTiltUncertainty(SampleSet sample, const TiltEstimate& estimate) {
-    const Radians u(std::hypot(estimate.joint.tilt().value(), uOfOneLed(estimate).value()));
+    const TurnUncertainty u = uOfOneLed(estimate, estimate.joint.tilt());
     forEachCell(
         sample, estimate, [&](CellSamples& cells, const Place& place) { widen(cells, place, u); });
     return sample;

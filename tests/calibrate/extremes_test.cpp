@@ -109,7 +109,7 @@ TEST_P(CalibrateExtremes, NothingCrashesAndWhatIsSaidIsHonest) {
     const CellSignal black = signal(even(wanted.black), library);
     const ReferenceTable certifiedWhite = ReferenceTable::lambertian("white", 0.98, 0.005);
     const ReferenceTable certifiedBlack = ReferenceTable::lambertian("black", 0.001, 0.1);
-    const AngleUncertainty angle = [](std::size_t) { return 0.01_deg; };
+    const std::vector angle(CellGrid::count(), DirectionSpread::even(0.01_deg));
     const Calibrated out = calibrate(sample,
                                      {white, black, certifiedWhite, certifiedBlack},
                                      Direction::fromSpherical(20_deg, 0_deg),

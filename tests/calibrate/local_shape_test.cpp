@@ -40,7 +40,9 @@ TEST(LocalShape, AFlankThatFallsByAFactorFromCellToCellHasItsOwnSlope) {
     const double off = 0.1 / kPerDegree;
     EXPECT_NEAR(shape.at(f, off, 0) / f, std::exp(-0.2), 1e-6);
     // f'' = steep^2 f along theta alone: sqrt(1/4 + 1/2) of it times u^2.
-    EXPECT_NEAR(shape.secondOrder(f, off) / f, std::sqrt(0.75) * 0.04, 1e-6);
+    EXPECT_NEAR(shape.secondOrder(f, DirectionSpread::even(Radians(off))) / f,
+                std::sqrt(0.75) * 0.04,
+                1e-6);
 }
 
 TEST(LocalShape, WhereFIsLostInNoiseDifferencesOfFCount) {
@@ -83,7 +85,7 @@ TEST(LocalShape, OneNeighbourGivesASlopeAndNoneNothing) {
     }
     const LocalShape none = localShape(cells, cell);
     EXPECT_EQ(none.slope(cells.f[cell]), 0);
-    EXPECT_EQ(none.secondOrder(cells.f[cell], 1), 0);
+    EXPECT_EQ(none.secondOrder(cells.f[cell], DirectionSpread::even(Radians(1))), 0);
 }
 
 TEST(LocalShape, IsFiniteInEveryCell) {
@@ -91,7 +93,9 @@ TEST(LocalShape, IsFiniteInEveryCell) {
     for (std::size_t cell = 0; cell < cells.size(); ++cell) {
         const LocalShape shape = localShape(cells, cell);
         ASSERT_TRUE(std::isfinite(shape.slope(cells.f[cell]))) << cell;
-        ASSERT_TRUE(std::isfinite(shape.secondOrder(cells.f[cell], 1e-3))) << cell;
+        ASSERT_TRUE(
+            std::isfinite(shape.secondOrder(cells.f[cell], DirectionSpread::even(Radians(1e-3)))))
+            << cell;
     }
 }
 

@@ -28,7 +28,7 @@ CellInputs bright() {
             .uWhite = 0.005,
             .uBlack = 3e-5,
             .uLight = 0.002,
-            .uAngle = 1e-4,
+            .uAngle = DirectionSpread::even(Radians(1e-4)),
             .uElse = 2e-4,
             .shape = {.logarithmic = false, .theta = {.slope = 3, .curvature = 0}, .phi = {}}};
 }
@@ -46,7 +46,7 @@ TEST(MonteCarlo, AgreesWithFirstOrderWhereTheEquationIsLinear) {
                               in.uLight * gain * in.sample,
                               in.uLight * gain * q * in.white,
                               in.uLight * gain * (1 - q) * in.black,
-                              3 * in.uAngle,
+                              3 * in.uAngle.alongTheta.value(),
                               in.uElse}) {
         systematic = std::hypot(systematic, part);
     }
@@ -71,7 +71,7 @@ double normalShare(double z) { return 0.5 * std::erfc(-z / std::sqrt(2.0)); }
 TEST(MonteCarlo, OnASteepFlankItIsTheLognormalsAndNotFirstOrder) {
     // 2 per degree, 0.2 degree: ln f is off by 0.4 sigma.
     CellInputs in{.sample = 1, .white = 2, .fWhite = 1, .shape = {}};
-    in.uAngle = 0.2 * kPi / 180;
+    in.uAngle = DirectionSpread::even(0.2_deg);
     in.shape.logarithmic = true;
     in.shape.theta.slope = 2 * 180 / kPi;
     const double wanted = expectedU([](double h) {
@@ -117,7 +117,8 @@ TEST(MonteCarlo, FirstOrderFailsWhereTheContrastIsNotKnownToATenth) {
 TEST(MonteCarlo, FirstOrderFailsWhereCurvatureIsATenthOfU) {
     CellInputs in = bright();
     in.shape.theta.curvature = 1e4;
-    const double second = std::sqrt(0.75) * 1e4 * in.uAngle * in.uAngle;
+    const double u = in.uAngle.alongTheta.value();
+    const double second = std::sqrt(0.75) * 1e4 * u * u;
     EXPECT_FALSE(firstOrderFails(in, 10.1 * second));
     EXPECT_TRUE(firstOrderFails(in, 9.9 * second));
 }

@@ -42,7 +42,7 @@ struct Tiles {
     [[nodiscard]] Calibrated operator()(const CellSignal& sample,
                                         Radians uAngle = 0_deg,
                                         double ledDrift = 0) const {
-        const AngleUncertainty angle = [=](std::size_t) { return uAngle; };
+        const std::vector angle(CellGrid::count(), DirectionSpread::even(uAngle));
         return calibrate(
             sample, {whiteSignal, blackSignal, white, black}, kLight, Band::G, {angle, ledDrift});
     }
@@ -222,10 +222,9 @@ Calibrated withTrap(const CellSignal& sample, double whiteFactor, double trap) {
     const CellSignal whiteSignal =
         signalOf([=](const Direction&) { return 0.98 / kPi * whiteFactor; });
     const CellSignal zeroSignal = signalOf([=](const Direction&) { return trap; });
+    const std::vector<DirectionSpread> angle(CellGrid::count());
     return calibrate(
-        sample, {whiteSignal, zeroSignal, white, zero}, kLight, Band::G, {[](std::size_t) {
-            return 0_deg;
-        }});
+        sample, {whiteSignal, zeroSignal, white, zero}, kLight, Band::G, {.angle = angle});
 }
 
 TEST(TwoPoint, AZeroReferenceTakesTheBlacksPlace) {
@@ -305,7 +304,7 @@ TEST(TwoPoint, BudgetNamesEveryComponent) {
 
 TEST(TwoPoint, BudgetLineIsSensitivityTimesSize) {
     const Tiles tiles;
-    const AngleUncertainty angle = [](std::size_t) { return 0.1_deg; };
+    const std::vector angle(CellGrid::count(), DirectionSpread::even(0.1_deg));
     const CellSignal sample = signalOf([](const Direction&) { return 0.3; });
     const Calibrated out =
         calibrate(sample,
@@ -333,7 +332,7 @@ TEST(TwoPoint, BudgetLineIsSensitivityTimesSize) {
 
 TEST(TwoPoint, MonteCarloOnRequestAgreesWithFirstOrder) {
     const Tiles tiles;
-    const AngleUncertainty angle = [](std::size_t) { return 0.05_deg; };
+    const std::vector angle(CellGrid::count(), DirectionSpread::even(0.05_deg));
     const CellSignal sample = signalOf(slanted);
     const auto with = [&](const MonteCarlo& monteCarlo) {
         return calibrate(sample,

@@ -80,7 +80,7 @@ double normalisedVariance(const Direction& wo, Radians wedgeTolerance) {
         if (!fit) return std::numeric_limits<double>::infinity();
         const auto seen = fit->map.directionAt(truth.pointOf(wo));
         const double error = angleBetween({wo, *seen}).value();
-        sum += 0.5 * std::pow(error / DirectionUncertainty(*fit)(wo).value(), 2);
+        sum += 0.5 * std::pow(error / DirectionUncertainty(*fit)(wo).perAxis().value(), 2);
     }
     return sum / kFits;
 }

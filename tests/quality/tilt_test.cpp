@@ -24,7 +24,7 @@ std::unique_ptr<const Scatterer> model(const std::string& spec) {
 }
 
 /// Lambert and a lobe of other facets than GGX's: Beckmann's, or GTR's with a longer tail.
-struct OtherLobe : AnalyticModel {
+struct OtherLobe : Scatterer {
     enum class Facets {
         Beckmann,
         Gtr15
@@ -34,8 +34,7 @@ struct OtherLobe : AnalyticModel {
     OtherLobe(Facets of, double width, double reflectance, double diffuse)
         : facets(of), alpha(width), f0(reflectance), albedo(diffuse) {}
 
-protected:
-    [[nodiscard]] LedBands evaluate(const LightView& pair) const override {
+    [[nodiscard]] Answer answer(const LightView& pair) const override {
         const Eigen::Vector3d half = (pair.in.vector() + pair.out.vector()).normalized();
         const double c2 = half.z() * half.z(), a2 = alpha * alpha;
         double d = 0;
@@ -44,9 +43,12 @@ protected:
         } else {  // gamma = 1.5
             d = (a2 - 1) / (2 * kPi * (1 - 1 / alpha)) / std::pow(1 + (a2 - 1) * c2, 1.5);
         }
-        const double v = ggxV(pair, {alpha, alpha}, Masking::HeightCorrelated);
-        const LedBands fresnel = schlick(LedBands::all(f0), half.dot(pair.in.vector()));
-        return LedBands::all(albedo / kPi + d * v * fresnel[Band::G]);
+        const double v =
+            ggxV(pairOf<double>(pair), Alpha<double>::isotropic(alpha), Masking::HeightCorrelated);
+        const double fresnel = schlick(f0, 1.0, half.dot(pair.in.vector()));
+        Answer answer;
+        answer.f = LedBands::all(albedo / kPi + d * v * fresnel);
+        return answer;
     }
 };
 
@@ -186,11 +188,12 @@ TEST(Tilt, WavesOfLobesThatAreNoGgxAreNotHiddenByTheMisfit) {
 
 TEST(Tilt, OfALobeThatIsNotToBeFittedIsNotDeterminedWhichIsNotNothing) {
     // A ring: bright where no distribution of facets about one normal puts it.
-    struct Ring : AnalyticModel {
-    protected:
-        [[nodiscard]] LedBands evaluate(const LightView& pair) const override {
+    struct Ring : Scatterer {
+        [[nodiscard]] Answer answer(const LightView& pair) const override {
             const double off = angleBetween({pair.out, mirrorOf(pair.in)}).degrees();
-            return LedBands::all(0.01 + std::exp(-std::pow((off - 20) / 2, 2)));
+            Answer answer;
+            answer.f = LedBands::all(0.01 + std::exp(-std::pow((off - 20) / 2, 2)));
+            return answer;
         }
     };
     const auto found = estimateTilt(seen(Ring(), Direction()), kLens);
@@ -260,7 +263,7 @@ TEST(TiltCorrection, UncertaintyOfTheTiltIsTheSlopeOfTheLobe) {
     const auto surface = model("ggx,alpha=0.1,f0=0.5");
     SampleSet flat = seen(*surface, Direction());
     const TiltEstimate estimate{
-        .joint = {.direction = Direction(), .u = 0.1_deg, .uSeen = 0.1_deg},
+        .joint = {.direction = Direction(), .u = 0.1_deg, .uSeen = TurnUncertainty::even(0.1_deg)},
         .leds = {},
         .lobes = std::vector<TiltLobe>(4, {.diffuse = 0, .alpha = 0.1, .f0 = 0.5}),
         .waviness = {}};
@@ -296,7 +299,8 @@ TEST(TiltCorrection, WavesAddAsMuchAboutEitherAxisAsAnUncertaintyOfThatSize) {
                         .lobes = std::vector<TiltLobe>(4, {.diffuse = 0, .alpha = 0.1, .f0 = 0.5}),
                         .waviness = {}};
     TiltEstimate wavy = unsure;
-    wavy.joint.u = wavy.joint.uSeen = Radians(0);
+    wavy.joint.u = Radians(0);
+    wavy.joint.uSeen = {};
     wavy.waviness = 0.1_deg * std::sqrt(2.0);
     using Change = std::function<SampleSet(const SampleSet&, const TiltEstimate&)>;
     for (const Change& change : {Change(withTiltUncertainty), Change(tiltCorrected)}) {

@@ -125,9 +125,11 @@ std::vector<Verdict> CoverageStudy::repeat(std::uint64_t seed) const {
             proc::SampleSet set;
             for (std::size_t i = 0; i < kLeds.size(); ++i) {
                 const Direction wi = sim::ledDirection(kLeds[i]);
-                const proc::AngleUncertainty ofLed = [&](std::size_t cell) {
-                    return uOf(i, proc::CellGrid::centre(cell));
-                };
+                std::vector<DirectionSpread> ofLed(proc::CellGrid::count());
+                for (std::size_t cell = 0; cell < ofLed.size(); ++cell) {
+                    if (signals[i].present(cell))
+                        ofLed[cell] = uOf(i, proc::CellGrid::centre(cell));
+                }
                 proc::LedTable table{.incidence = wi.theta(), .bands = {}};
                 table.bands[index(kBand)] = proc::calibrate(signals[i],
                                                             {.whiteSignal = whites[i],
@@ -145,12 +147,13 @@ std::vector<Verdict> CoverageStudy::repeat(std::uint64_t seed) const {
         proc::SampleSet flat =
             calibrated([&](std::size_t, const Direction& wo) { return uAngle(wo); });
         // As `gonio measure` does it.
-        const auto tilt =
-            proc::estimateTilt(flat, uAngle(Direction::fromSpherical(kTypicalView, Radians(0))));
+        auto tilt = proc::estimateTilt(
+            flat, uAngle(Direction::fromSpherical(kTypicalView, Radians(0))).perAxis());
         if (daemon::worthCorrecting(tilt)) {
             const proc::SeenDirection seen(lens, incidences, *tilt);
             flat = calibrated(
                 [&](std::size_t led, const Direction& wo) { return seen.uncertainty(led, wo); });
+            tilt->waviness = seen.wavesBeyondTheMap(*tilt);
         }
         flat = daemon::referredToItsNormal(std::move(flat), tilt);
         for (std::size_t i = 0; i < kLeds.size(); ++i) {
