@@ -317,7 +317,7 @@ proc::SampleSet calibrateSample(const PlacementSignals& signals,
                 overField([&](const Direction& wo) { return seen.uncertainty(led, wo); }));
         }
         set = asIfFlat(signals, ledAngles, references, ofLobes, monteCarlo);
-        tilt->waviness = seen.wavesBeyondTheMap(*tilt);
+        tilt->waves = seen.wavesBeyondTheMap(*tilt);
     }
     info.budgetJson = std::move(set.info.budgetJson);
     noteBlackCheck(checkBlack(references, ledAngles), info);

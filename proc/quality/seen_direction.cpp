@@ -64,21 +64,25 @@ DirectionSpread SeenDirection::uncertainty(std::size_t led, const Direction& wo)
     return lens_.ofSlopes(wo, *slopes + turn * lobe.taken);
 }
 
-// A lobe that is seen e off its place shows a normal that is e / 2 off.
-Radians SeenDirection::wavesBeyondTheMap(const TiltEstimate& estimate) const {
-    double squares = 0;
+// All lobes lie along x. One that is seen e off its place along theta shows a normal that is e / 2
+// off; along phi, across the plane of incidence, e / (2 cos(theta)).
+TurnUncertainty SeenDirection::wavesBeyondTheMap(const TiltEstimate& estimate) const {
+    double x = 0, y = 0;
     int count = 0;
     for (std::size_t led = 0; led < lobes_.size(); ++led) {
         if (led >= estimate.leds.size() || !estimate.leds[led]) continue;
         const auto lobe = Direction::fromVector(lobes_[led].at);
         if (!lobe || !lobe->aboveHorizon()) continue;
-        const double perAxis = uncertainty(led, *lobe).perAxis().value() / 2;
-        squares += 2 * perAxis * perAxis;
+        const DirectionSpread spread = uncertainty(led, *lobe);
+        x += std::pow(spread.alongTheta.value() / 2, 2);
+        y += std::pow(spread.alongPhi.value() / (2 * lobe->z()), 2);
         ++count;
     }
-    const double waves = estimate.waviness.value();
-    const double map = count > 0 ? squares / count : 0;
-    return Radians(std::sqrt(std::max(0.0, waves * waves - map)));
+    if (count == 0) return estimate.waves;
+    const auto rest = [&](Radians waves, double map) {
+        return Radians(std::sqrt(std::max(0.0, waves.value() * waves.value() - map / count)));
+    };
+    return {rest(estimate.waves.towardX, x), rest(estimate.waves.towardY, y)};
 }
 
 }  // namespace gonio::proc

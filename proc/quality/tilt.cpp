@@ -388,17 +388,31 @@ bool standsOut(const SampleSet& sample, const TiltEstimate& estimate) {
     return 2 * count >= sample.leds.size();
 }
 
-Radians wavinessOf(std::span<const std::optional<OwnNormal>> leds, const Direction& joint) {
-    double squares = 0;
+/// What the LEDs' own normals differ by beyond their noise.
+struct Waves {
+    double x = 0, y = 0;  ///< mean squares, of which noise may leave less than nothing
     int count = 0;
+
+    [[nodiscard]] Radians both() const { return root(x + y); }
+    [[nodiscard]] TurnUncertainty byAxis() const { return {root(x), root(y)}; }
+
+private:
+    [[nodiscard]] Radians root(double squares) const {
+        return Radians(count < 2 ? 0 : std::sqrt(std::max(0.0, squares / count)));
+    }
+};
+
+Waves wavesOf(std::span<const std::optional<OwnNormal>> leds, const Direction& joint) {
+    Waves waves;
     for (const auto& led : leds) {
         if (!led) continue;
-        const double apart = angleBetween({led->normal.direction, joint}).value();
-        const double uFit = led->uFit.perAxis().value(), uMisfit = led->uMisfit.value();
-        squares += apart * apart - 2 * uFit * uFit - uMisfit * uMisfit;
-        ++count;
+        const Eigen::Vector3d apart = led->normal.direction.vector() - joint.vector();
+        const double misfit = 0.5 * led->uMisfit.value() * led->uMisfit.value();
+        waves.x += apart.x() * apart.x() - std::pow(led->uFit.towardX.value(), 2) - misfit;
+        waves.y += apart.y() * apart.y() - std::pow(led->uFit.towardY.value(), 2) - misfit;
+        ++waves.count;
     }
-    return Radians(count < 2 ? 0 : std::sqrt(std::max(0.0, squares / count)));
+    return waves;
 }
 
 /// There is a lobe, and how it lies is not to be seen.
@@ -446,7 +460,9 @@ std::optional<TiltEstimate> estimateTilt(const SampleSet& sample, Radians uAngle
         own.push_back(normalSeenBy(led, shape, estimate.joint, uAngle));
         estimate.leds.push_back(own.back() ? std::optional(own.back()->normal) : std::nullopt);
     }
-    estimate.waviness = wavinessOf(own, normal);
+    const Waves waves = wavesOf(own, normal);
+    estimate.waviness = waves.both();
+    estimate.waves = waves.byAxis();
     return estimate;
 }
 

@@ -66,6 +66,7 @@ struct TiltEstimate {
     /// Root mean square angle between the LEDs' normals and the joint one, beyond the scatter and
     /// the misfit of their fits; 0 where these explain it.
     Radians waviness;
+    TurnUncertainty waves;  ///< the same by axis, of one LED's normal
 };
 
 /// `uAngle`: standard uncertainty of the lens map's directions, per axis. Empty without

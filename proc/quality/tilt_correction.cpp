@@ -65,14 +65,13 @@ Flags lostBy(const Answer& needed) {
     return why == Flags{} ? Flags{Flag::Blocked} : why;
 }
 
-/// Of the normal that one LED sees: the joint one's, and the waves. Their root mean square angle is
-/// that of both axes together. `more` is added to either axis.
+/// Of the normal that one LED sees: the joint one's, and the waves. `more` is added to either axis.
 TurnUncertainty uOfOneLed(const TiltEstimate& estimate, Radians more = Radians(0)) {
-    const double waves = estimate.waviness.value() / std::numbers::sqrt2;
-    const auto with = [&](Radians u) {
-        return Radians(std::hypot(u.value(), waves, more.value()));
+    const auto with = [&](Radians u, Radians waves) {
+        return Radians(std::hypot(u.value(), waves.value(), more.value()));
     };
-    return {with(estimate.joint.uSeen.towardX), with(estimate.joint.uSeen.towardY)};
+    return {with(estimate.joint.uSeen.towardX, estimate.waves.towardX),
+            with(estimate.joint.uSeen.towardY, estimate.waves.towardY)};
 }
 
 /// Adds what turns of u (k = 1) do to f, root mean square: by three points of a Gauss-Hermite rule

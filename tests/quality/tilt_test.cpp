@@ -292,16 +292,16 @@ double addedOnTheFlank(const SampleSet& sample, const Change& change) {
     return std::sqrt(std::pow(cells.uSystematic[cell] / cells.f[cell], 2) - before * before);
 }
 
-TEST(TiltCorrection, WavesAddAsMuchAboutEitherAxisAsAnUncertaintyOfThatSize) {
+TEST(TiltCorrection, WavesAddAsMuchAsAnUncertaintyOfThatSize) {
     const SampleSet flat = seen(*model("ggx,alpha=0.1,f0=0.5"), Direction());
-    TiltEstimate unsure{.joint = {Direction(), 0.1_deg, 0.1_deg},
+    TiltEstimate unsure{.joint = {Direction(), 0.1_deg, TurnUncertainty::even(0.1_deg)},
                         .leds = {},
                         .lobes = std::vector<TiltLobe>(4, {.diffuse = 0, .alpha = 0.1, .f0 = 0.5}),
                         .waviness = {}};
     TiltEstimate wavy = unsure;
     wavy.joint.u = Radians(0);
     wavy.joint.uSeen = {};
-    wavy.waviness = 0.1_deg * std::sqrt(2.0);
+    wavy.waves = TurnUncertainty::even(0.1_deg);
     using Change = std::function<SampleSet(const SampleSet&, const TiltEstimate&)>;
     for (const Change& change : {Change(withTiltUncertainty), Change(tiltCorrected)}) {
         const auto with = [&](const TiltEstimate& estimate) {

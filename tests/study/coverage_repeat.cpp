@@ -153,7 +153,7 @@ std::vector<Verdict> CoverageStudy::repeat(std::uint64_t seed) const {
             const proc::SeenDirection seen(lens, incidences, *tilt);
             flat = calibrated(
                 [&](std::size_t led, const Direction& wo) { return seen.uncertainty(led, wo); });
-            tilt->waviness = seen.wavesBeyondTheMap(*tilt);
+            tilt->waves = seen.wavesBeyondTheMap(*tilt);
         }
         flat = daemon::referredToItsNormal(std::move(flat), tilt);
         for (std::size_t i = 0; i < kLeds.size(); ++i) {
