@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "proc/models/optical_constants.h"
+
 namespace gonio::proc {
 
 AlphaNumbers alphaOf(SpecParameters& p) {
@@ -17,32 +19,42 @@ AlphaNumbers alphaOf(SpecParameters& p) {
     return {alpha, alpha};
 }
 
+namespace {
+
+/// The dielectric of this f0; no dielectric reflects all, one of index 1e9 lacks 4e-9.
+double indexOf(double f0) { return f0 < 1 ? etaOfF0(f0) : 1e9; }
+
+/// From eta with or without k, or from a table of both.
+void readIndex(SpecParameters& p, FresnelNumbers& numbers) {
+    if (p.has("nk")) {
+        const Result<OpticalConstants> table = readOpticalConstants(p.text("nk"));
+        if (!table) return p.refuse(table.error());
+        numbers.eta = table->eta;
+        numbers.k = table->k;
+        return;
+    }
+    numbers.eta = p.bands("eta", kIndexRange);
+    if (p.has("k")) numbers.k = p.bands("k", {0, kIndexRange.high});
+}
+
+}  // namespace
+
 FresnelNumbers fresnelOf(SpecParameters& p) {
     FresnelNumbers numbers;
     const bool exact = p.choice("fresnel", {"schlick", "exact"}) == 1;
-    if (!p.has("eta")) {
-        numbers.f0 = p.bands("f0", kShare);
-        if (!exact) return numbers;
+    if (p.has("eta") || p.has("nk")) {
+        const bool conductor = p.has("k") || p.has("nk");
+        readIndex(p, numbers);
         for (Band b : kBands) {
-            const double f0 = numbers.f0[b];
-            if (f0 >= 1) {
-                // No dielectric reflects all: one of this index lacks 4e-9.
-                numbers.eta[b] = 1e9;
-            } else {
-                numbers.eta[b] = etaOfF0(f0);
-            }
+            numbers.f0[b] =
+                fresnelConductor(ComplexIndex<double>{numbers.eta[b], numbers.k[b]}, 1.0);
         }
-        numbers.form = FresnelForm::Dielectric;
+        if (exact) numbers.form = conductor ? FresnelForm::Conductor : FresnelForm::Dielectric;
         return numbers;
     }
-    numbers.eta = p.bands("eta", kIndexRange);
-    const bool conductor = p.has("k");
-    if (conductor) numbers.k = p.bands("k", {0, kIndexRange.high});
-    for (Band b : kBands) {
-        const ComplexIndex<double> index{numbers.eta[b], numbers.k[b]};
-        numbers.f0[b] = fresnelConductor(index, 1.0);
-    }
-    if (exact) numbers.form = conductor ? FresnelForm::Conductor : FresnelForm::Dielectric;
+    numbers.f0 = p.bands("f0", kShare);
+    for (Band b : kBands) numbers.eta[b] = indexOf(numbers.f0[b]);
+    if (exact) numbers.form = FresnelForm::Dielectric;
     return numbers;
 }
 

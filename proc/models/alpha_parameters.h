@@ -27,7 +27,7 @@ struct FresnelNumbers {
             .form = form, .f0 = Bands<P>::of(f0), .eta = Bands<P>::of(eta), .k = Bands<P>::of(k)};
     }
 };
-/// f0, or eta with or without k; fresnel=schlick|exact.
+/// f0, or eta with or without k, or nk=FILE (optical_constants.h); fresnel=schlick|exact.
 [[nodiscard]] FresnelNumbers fresnelOf(SpecParameters& p);
 
 }  // namespace gonio::proc

@@ -25,6 +25,7 @@ struct CatalogueEntry {
 [[nodiscard]] std::span<const CatalogueEntry> slopeModels();
 [[nodiscard]] std::span<const CatalogueEntry> microfacetModels();
 [[nodiscard]] std::span<const CatalogueEntry> materialModels();
+[[nodiscard]] std::span<const CatalogueEntry> publishedModels();
 
 inline constexpr ValueRange kShare{0, 1};
 inline constexpr ValueRange kAlphaRange{1e-7, 1};

@@ -76,7 +76,7 @@ Lobe makeTabulated(SpecParameters& p, EvalPath path) {
     const LedBands f0 = p.bandsOr("f0", kShare, 1);
     const Result<NormalTable> table = NormalTable::read(file);
     if (!table) {
-        p.complain(table.error().message);
+        p.refuse(table.error());
         return nullptr;
     }
     const auto shared = std::make_shared<const NormalTable>(*table);

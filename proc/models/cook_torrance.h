@@ -8,7 +8,7 @@
 // energy).
 //   cook-torrance(m, f0)     F by Schlick from f0
 //   low(roughness, eta)      F exact for a dielectric, the form of the fits in [Low2012]
-// m, roughness in [1e-7, 1]. Reciprocal.
+// m in [1e-7, 1], roughness in [1e-7, 10]. Reciprocal.
 
 #include "proc/models/fresnel.h"
 #include "proc/models/normal_distribution.h"

@@ -32,7 +32,8 @@ std::vector<CatalogueEntry> allModels() {
                               blinnPhongModels(),
                               slopeModels(),
                               microfacetModels(),
-                              materialModels()}) {
+                              materialModels(),
+                              publishedModels()}) {
         all.insert(all.end(), family.begin(), family.end());
     }
     return all;

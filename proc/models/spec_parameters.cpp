@@ -85,8 +85,10 @@ std::size_t SpecParameters::choice(const std::string& key,
     return 0;
 }
 
-void SpecParameters::complain(const std::string& what) {
-    if (!error_) error_ = Error{ErrorKind::Usage, "model " + lobe_ + ": " + what};
+void SpecParameters::complain(const std::string& what) { refuse({ErrorKind::Usage, what}); }
+
+void SpecParameters::refuse(const Error& error) {
+    if (!error_) error_ = error.in("model " + lobe_);
 }
 
 std::optional<Error> SpecParameters::verdict() {

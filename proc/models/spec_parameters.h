@@ -34,6 +34,8 @@ public:
     [[nodiscard]] std::size_t choice(const std::string& key,
                                      const std::vector<std::string>& choices);
     void complain(const std::string& what);
+    /// With the kind of the error, such as a file's.
+    void refuse(const Error& error);
 
     /// After all parameters were asked for: the first complaint, unknown names included.
     [[nodiscard]] std::optional<Error> verdict();
