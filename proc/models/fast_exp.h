@@ -1,14 +1,16 @@
 #pragma once
 // 2^x and log2(x) from a polynomial and the exponent's bits, for float and double: what a loop over
 // an array can do several at a time, where the library's functions cannot. Polynomials fitted by
-// linear programming to the least relative error over one octave (docs/numerics.md):
-//   exp2<3> 1.0e-4, exp2<4> 2.8e-6, exp2<5> 9.1e-8;  log2<5> 7.4e-6, log2<7> 1.5e-7 (weighted).
+// linear programming (config/tools/fit_powers.py), exp2 to the least relative error, log2 to the
+// least that it does to any power c^n of a c in (0, 1]:
+//   exp2<3> 1.0e-4, exp2<4> 2.8e-6, exp2<5> 9.1e-8;  log2<5> 2.2e-6, log2<7> 4.9e-8.
 // exp2: x below -126 is taken as -126 (1e-38) and above 126 as 126; NaN stays NaN in no promise.
 
 #include <bit>
 #include <cmath>
 #include <concepts>
 #include <cstdint>
+#include <type_traits>
 
 #include "proc/core/effort.h"
 #include "proc/models/kernel.h"
@@ -46,7 +48,7 @@ template <int Degree, std::floating_point T>
     if constexpr (Degree == 3) {
         p = T(0.6932829573) + f * (T(0.2422109707) + f * T(0.055008823));
     } else if constexpr (Degree == 4) {
-        p = T(0.6931243882) + f * (T(0.2402414009) + f * (T(0.0559058288) + f * T(0.0095813166)));
+        p = T(0.6931241934) + f * (T(0.2402409859) + f * (T(0.0559064247) + f * T(0.0095828538)));
     } else {
         p = T(0.6931469775) +
             f * (T(0.2402224207) +
@@ -64,14 +66,22 @@ struct Octave {
     T octave;
 };
 
-/// x a normal number above 0.
+/// x a normal number above 0; what is below is taken as the least octave.
 template <std::floating_point T>
 [[nodiscard]] inline Octave<T> octaveOf(T x) {
     using Bits = FloatBits<T>;
-    const auto bits = std::bit_cast<typename Bits::Signed>(x);
-    const auto octave = (bits - Bits::kRootHalf) >> Bits::kMantissa;
-    const T m = std::bit_cast<T>(bits - (octave << Bits::kMantissa));
-    return {m - T(1), static_cast<T>(octave)};
+    using Unsigned = std::make_unsigned_t<typename Bits::Signed>;
+    constexpr auto kOne = std::bit_cast<Unsigned>(T(1));
+    constexpr auto kBias = kOne >> Bits::kMantissa;
+    constexpr T kWhole = T(std::int64_t(1) << Bits::kMantissa);
+    // Biased, so that the shift is one of unsigned numbers, and made a T by its bits: before
+    // AVX-512 there is neither a signed shift nor a conversion of 64 bits in vectors.
+    const auto bits = std::bit_cast<Unsigned>(x);
+    const Unsigned octave =
+        (bits + (kOne - static_cast<Unsigned>(Bits::kRootHalf))) >> Bits::kMantissa;
+    const T m = std::bit_cast<T>(bits + kOne - (octave << Bits::kMantissa));
+    const T number = std::bit_cast<T>(octave | std::bit_cast<Unsigned>(kWhole));
+    return {m - T(1), number - (kWhole + T(kBias))};
 }
 
 /// log2(1 + s) for 1 + s in [sqrt(1/2), sqrt(2)].
@@ -80,18 +90,18 @@ template <int Degree, std::floating_point T>
     static_assert(Degree == 5 || Degree == 7);
     if constexpr (Degree == 5) {
         return s *
-               (T(1.4427016707) +
-                s * (T(-0.7212061693) +
-                     s * (T(0.4798098985) +
-                          s * (T(-0.3664937287) + s * (T(0.318216494) + s * T(-0.2062025324))))));
+               (T(1.4427038929) +
+                s * (T(-0.7212492251) +
+                     s * (T(0.4795155014) +
+                          s * (T(-0.3655466023) + s * (T(0.3211178221) + s * T(-0.2131786029))))));
     } else {
-        return s * (T(1.4426949564) +
-                    s * (T(-0.7213523341) +
-                         s * (T(0.4809256273) +
-                              s * (T(-0.3602576502) +
-                                   s * (T(0.2870199966) +
-                                        s * (T(-0.2486411967) +
-                                             s * (T(0.2346068209) + s * T(-0.1471025859))))))));
+        return s * (T(1.4426948463) +
+                    s * (T(-0.7213516044) +
+                         s * (T(0.4809462226) +
+                              s * (T(-0.3602755440) +
+                                   s * (T(0.2865629859) +
+                                        s * (T(-0.2481414430) +
+                                             s * (T(0.2374071229) + s * T(-0.1515066975))))))));
     }
 }
 

@@ -3,23 +3,31 @@
 namespace gonio::proc {
 
 // With R and L the cosines at which cos^n is Q = 1/2 and G = 1/18, the cubic through (1, 1), (R,
-// Q), (L, G) and (0, 0). Written as divided differences of p(c) / c, which is a parabola: the
-// published quotients of like terms lose eight digits.
+// Q), (L, G) and (0, 0). Written as divided differences of p(c) / c, which is a parabola
+//   1 - t (slope - a t),  t = 1 - c:
+// the published quotients of like terms lose eight digits.
 CubicCoefficients cubicCoefficients(double n) {
     const double tR = -std::expm1(std::log(0.5) / n);       // 1 - R
     const double tL = -std::expm1(std::log(1.0 / 18) / n);  // 1 - L
-    const double r = 1 - tR;
-    const double l = 1 - tL;
-    const double slopeR = (1 - 0.5 / r) / tR;
-    const double slopeL = (1 - 1.0 / 18 / l) / tL;
+    const double slopeR = (1 - 0.5 / (1 - tR)) / tR;
+    const double slopeL = (1 - 1.0 / 18 / (1 - tL)) / tL;
     const double a = (slopeR - slopeL) / (tL - tR);
-    // p(c)/c = 1 + (c - 1) slopeR + (c - 1)(c - R) a.
-    const double b = slopeR - a * (1 + r);
-    const double c = 1 - slopeR + a * r;
-    // Least value: 3 a c^2 + 2 b c + C = 0, the larger root.
-    const double root = b * b - 3 * a * c;
-    const double cut = root > 0 ? (-b + std::sqrt(root)) / (3 * a) : 0;
-    return {.a = a, .b = b, .c = c, .cut = std::max(0.0, cut)};
+    const double slope = slopeR + a * tR;
+    constexpr double kNever = std::numeric_limits<double>::infinity();
+    // First zero of the parabola (for small n only); least value of the cubic: the smaller root of
+    // 3 a t^2 - 2 (slope + a) t + 1 + slope = 0.
+    const double zero = slope * slope - 4 * a;
+    const double tZero = zero > 0 && slope > 0 ? 2 / (slope + std::sqrt(zero)) : kNever;
+    const double half = slope + a;
+    const double turn = half * half - 3 * a * (1 + slope);
+    const double tLeast = turn > 0 ? (1 + slope) / (half + std::sqrt(turn)) : kNever;
+    const double tCut = std::min(tZero, tLeast);
+    return {.a = a,
+            .b = slope - 2 * a,
+            .c = 1 - slope + a,
+            .cut = std::max(0.0, 1 - tCut),
+            .slope = slope,
+            .tCut = tCut};
 }
 
 }  // namespace gonio::proc

@@ -1,22 +1,23 @@
 #pragma once
 // The cosine lobe cos^n and what has been proposed in its place: with c = cos, t = 1 - c given
-// without cancellation, u = n t. Errors are against cos^n over [0, pi/2], n in 8..1000, absolute.
+// without cancellation, u = n t. Errors are against cos^n over [0, pi/2], n in 8..1000, absolute,
+// in double; docs/powers.md has them all, with times.
 //   pow        the library's
-//   full75 full54  2^(n log2 c), polynomials of degree 7/5 and 5/4: 1.4e-7, 3.7e-6; n in 0..1e6
+//   full75 full54  2^(n log2 c), polynomials of degree 7/5 and 5/4: 1.1e-7, 3.4e-6; n in 0..1e6
 //   lite       2^(-n P(t)), P ~ -log2(1 - t) of degree 5: 1.0e-5; n >= 8
-//   sq8d3 sq8  q(u, t)^8, no division: 9.9e-5, 1.7e-3; n >= 8
+//   sq8d3 sq8  q(u, t)^8, no division: 1.0e-4, 1.7e-3; n >= 8; sq8 leaves 1.5e-3 far from the peak
 //   rec3m4 rec2m4  1 / d(u, t)^4, smooth: 2.0e-3, 1.0e-2; n >= 8
 //   schlick    c / (n - n c + c) [Schlick1994]: 0.20
-//   bps        a cubic of schlick [Zavalniuk2024]: 2.9e-2; as published: negative in places, 2.7e-3
-//              far from the peak, 0.993 at it
+//   bps        a cubic of schlick [Zavalniuk2024]: 2.9e-2; as published: 0.9927 at the peak, down
+//              to -0.0094 on the flank, 2.7e-3 far out
 //   f8         (1 + (c - 1) n / 8)^8, cut at 0 [Romanyuk2008]: 3.5e-2
-//   quadratic cubic  polynomials of c through given points, cut at 0 [Romanyuk2023]: 0.28, 0.055
-//   (and
-//              a residue that grows again, cut at its minimum)
-//   gauss      exp(-n theta^2 / 2): 2.4e-2;  lagarde  exp(-(n + 0.775)(1 - c))
-//   [Lagarde2012]: 1.9e-2
+//   quadratic  0.786 n c^2 + (1 - 0.786 n) c, cut at 0 [Romanyuk2023]: 0.28
+//   cubic      A c^3 + B c^2 + C c through 1/2 and 1/18, cut where it is least, which is not 0
+//              [Romanyuk2023]: 0.11
+//   gauss      exp(-n theta^2 / 2): 2.4e-2
+//   lagarde    exp(-(n + 0.775)(1 - c)) [Lagarde2012]: 1.9e-2
 // Ours approximate -ln(1 - t) / t instead of the curve: c^n = exp(-n L(t)), and a relative error e
-// of L costs at most 0.37 e of the peak at any n. tools/fit_powers regenerates the coefficients.
+// of L costs at most 0.37 e of the peak at any n. config/tools/fit_powers.py fits them anew.
 // Below n = 8 take full75, full54 or pow: the others err by up to 0.22 there.
 
 #include <concepts>
@@ -129,14 +130,32 @@ template <std::floating_point T>
     return std::max(T(0), x.c * (T(1) - T(0.786) * n * x.t));
 }
 
-/// A c^3 + B c^2 + C c, which is 1/2 where cos^n is and 1/18 where cos^n is; of n alone.
+/// A c^3 + B c^2 + C c, which is 1/2 where cos^n is and 1/18 where cos^n is; of n alone. The same
+/// cubic in t is c (1 - t (slope - A t)): A grows like n^2 and the terms in c cancel, those in t do
+/// not.
 struct CubicCoefficients {
     double a;
     double b;
     double c;
-    double cut;  ///< the cosine of its least value; 0 below
+    double
+        cut;  ///< the cosine of its first zero or, where it has none, of its least value; 0 below
+    double slope;
+    double tCut;  ///< 1 - cut; infinite where there is neither
 };
 [[nodiscard]] CubicCoefficients cubicCoefficients(double n);
+
+/// Of CubicCoefficients, what an evaluation needs.
+template <std::floating_point T>
+struct CubicInT {
+    T a;
+    T slope;
+    T tCut;
+};
+
+template <std::floating_point T>
+[[nodiscard]] inline T cubicPower(const CubicInT<T>& k, const NearOne<T>& x) {
+    return x.t < k.tCut ? x.c * (T(1) - x.t * (k.slope - k.a * x.t)) : T(0);
+}
 
 template <PowerForm Form, std::floating_point T>
 [[nodiscard]] inline T power(T n, const NearOne<T>& x) {
@@ -153,8 +172,8 @@ template <PowerForm Form, std::floating_point T>
     if constexpr (Form == PowerForm::Quadratic) return quadraticPower(n, x);
     if constexpr (Form == PowerForm::Cubic) {
         const CubicCoefficients k = cubicCoefficients(static_cast<double>(n));
-        const double c = static_cast<double>(x.c);
-        return c > k.cut ? static_cast<T>(c * (k.c + c * (k.b + c * k.a))) : T(0);
+        return cubicPower({static_cast<T>(k.a), static_cast<T>(k.slope), static_cast<T>(k.tCut)},
+                          x);
     }
     if constexpr (Form == PowerForm::Gauss) {
         // theta = 2 asin(sqrt(t / 2)): exact where acos(c) has lost it.
