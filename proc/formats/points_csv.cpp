@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "proc/core/number_text.h"
@@ -222,6 +223,29 @@ Result<Points> readPoints(const std::filesystem::path& path) {
     const Result<std::string> text = readFile(path);
     if (!text) return text.error();
     return parsePoints(*text, path.string());
+}
+
+Result<std::vector<double>> numbersOf(const Points& points, std::string_view column) {
+    const auto found = std::find(points.columns.begin(), points.columns.end(), column);
+    if (found == points.columns.end()) {
+        return Error{ErrorKind::File, "csv: no column " + std::string(column)};
+    }
+    const auto place = static_cast<std::size_t>(found - points.columns.begin());
+    std::vector<double> numbers;
+    numbers.reserve(points.rows.size());
+    for (std::size_t i = 0; i < points.rows.size(); ++i) {
+        const std::string_view field = fieldsOf(points.rows[i])[place];
+        const bool empty = field.empty() || field == "nan";
+        const std::optional<double> number =
+            empty ? std::numeric_limits<double>::quiet_NaN() : parseDouble(field);
+        if (!number) {
+            return Error{ErrorKind::File,
+                         "csv: row " + std::to_string(i + 1) + ": " + std::string(column) + ": " +
+                             shown(field) + ", wanted a number"};
+        }
+        numbers.push_back(*number);
+    }
+    return numbers;
 }
 
 std::string evalCsv(const Points& points, std::span<const Answer> answers, BandCount bands) {

@@ -28,6 +28,10 @@ struct Points {
 [[nodiscard]] Result<Points> parsePoints(std::string_view text, std::string_view name);
 [[nodiscard]] Result<Points> readPoints(const std::filesystem::path& path);
 
+/// The numbers of the column `column`, one per row; NaN where a field is empty or says nan. A File
+/// error for a column that is not there, or a field that is no number.
+[[nodiscard]] Result<std::vector<double>> numbersOf(const Points& points, std::string_view column);
+
 /// The input columns, then f_r,f_g,f_b (BandCount::One: f), u_r,u_g,u_b (u) where any answer knows
 /// it, flags (the decimal mask) and source. Empty where missing; shortest digits. An input column
 /// of one of these names is kept as input_NAME. One answer per row.

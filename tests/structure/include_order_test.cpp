@@ -89,6 +89,8 @@ const std::vector<Wrapped> kWrapped{
 };
 
 bool breaksWrapper(const std::string& file, const std::string& target) {
+    // Dual numbers are part of a template's type: this header is their one door.
+    if (file == "proc/solve/jet.h" && target == "ceres/jet.h") return false;
     return std::any_of(kWrapped.begin(), kWrapped.end(), [&](const Wrapped& wrapped) {
         return std::regex_match(target, wrapped.header) &&
                (file.ends_with(".h") || !startsWith(file, wrapped.owner));
@@ -150,6 +152,9 @@ TEST(IncludeOrder, SeesEachKindOfBackEdge) {
     EXPECT_TRUE(bad("proc/solve/a.h", "#include <ceres/ceres.h>"));
     EXPECT_TRUE(bad("proc/models/a.cpp", "#include \"lambert.h\""));
     EXPECT_TRUE(bad("proc/unheard/a.cpp", "#include \"proc/core/bands.h\""));
+    EXPECT_TRUE(bad("proc/fit/a.h", "#include <ceres/jet.h>"));
+    EXPECT_TRUE(bad("proc/solve/jet.h", "#include <ceres/ceres.h>"));
+    EXPECT_FALSE(bad("proc/solve/jet.h", "#include <ceres/jet.h>"));
     EXPECT_FALSE(bad("proc/solve/a.cpp", "#include <ceres/ceres.h>"));
     EXPECT_FALSE(bad("proc/formats/exr_parts.cpp", "#include <OpenEXR/ImfHeader.h>"));
     EXPECT_FALSE(bad("daemon/a.cpp", "#include <CLI/CLI.hpp>"));

@@ -1,0 +1,79 @@
+#pragma once
+// What a fit is made to: measured f per band with its standard uncertainties, at pairs of
+// directions, in groups of one incidence. From a measured sample, a Zemax table, or scattered
+// values in a CSV.
+//
+// A cell of a measured sample holds the mean over its solid angle: within 15 degrees of the mirror
+// direction, where a lobe may bend within a cell, it is given as nodes of a Gauss rule (2 x 2, up
+// to 4 x 4 within 3 degrees) whose weights sum to 1, elsewhere by its centre. All else is one node.
+//
+// Left out: what is missing, saturated, blocked, at or below the horizon, and what has no positive
+// uncertainty in a file that gives uncertainties. A file that gives none gets an assumed one,
+// relative to f with a floor of 1 % of the incidence's median: then `uKnown` is false and
+// chi-square says how the misfit compares with what was assumed.
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "proc/core/result.h"
+#include "proc/core/scatterer.h"
+#include "proc/formats/points_csv.h"
+#include "proc/models/kernel.h"
+#include "proc/table/sample_set.h"
+#include "proc/table/specular_table.h"
+
+namespace gonio::proc {
+
+struct WeightedNode {
+    Pair<double> pair;
+    double weight;
+};
+
+/// One pair of directions or one cell. A band that is not there has f = u = NaN.
+struct FitRow {
+    std::uint32_t firstNode = 0;
+    std::uint16_t nodeCount = 1;
+    std::uint16_t group = 0;  ///< index into BrdfData::incidences
+    std::int32_t cell = -1;   ///< of CellGrid; -1 where it is none
+    double solidAngle = 1;    ///< relative to the other rows
+    double cosThetaO = 1;
+    std::array<double, 3> f{};
+    std::array<double, 3> uRandom{};
+    std::array<double, 3> uSystematic{};
+};
+
+struct BrdfData {
+    std::vector<WeightedNode> nodes;
+    std::vector<FitRow> rows;
+    std::vector<Radians> incidences;  ///< of the groups, ascending
+    BandCount bands = BandCount::Three;
+    bool uKnown = true;
+    double assumedRelative = 0;  ///< what was assumed where u is not known
+    std::size_t leftOut = 0;     ///< pairs or cells
+
+    [[nodiscard]] std::size_t bandsUsed() const { return bands == BandCount::One ? 1 : 3; }
+    /// Number of values of f.
+    [[nodiscard]] std::size_t valueCount() const;
+};
+
+struct DataOptions {
+    double assumedRelative = 0.05;  ///< standard uncertainty where a file gives none
+    double relativeFloor = 0;       ///< of u_random, added in quadrature, relative to f
+};
+
+[[nodiscard]] BrdfData fitDataOf(const SampleSet& set, const DataOptions& options = {});
+/// The first plane of the first rotation; a Usage error for a table in XYZ or of transmission.
+[[nodiscard]] Result<BrdfData> fitDataOf(const SpecularTable& table,
+                                         const DataOptions& options = {});
+/// Columns f or f_r,f_g,f_b, and where there u_random* or else u*, u_systematic*, flags.
+[[nodiscard]] Result<BrdfData> fitDataOf(const Points& points, const DataOptions& options = {});
+
+/// Rows of `groups`, at most about `count`, for fits that need not see all: the brightest quarter
+/// of them by count in each group, the rest evenly. Deterministic.
+[[nodiscard]] std::vector<std::uint32_t> thinnedRows(const BrdfData& data,
+                                                     const std::vector<bool>& groups,
+                                                     std::size_t count);
+
+}  // namespace gonio::proc

@@ -1,0 +1,73 @@
+#pragma once
+// What a fit of a family to rows of data minimises, as sums (proc/solve/normal_fit.h). Parameters
+// are fitted as numbers q: the value itself, or its logarithm; shared ones first, then each
+// per-band one for the bands in turn.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "proc/fit/model_fit.h"
+#include "proc/solve/normal_fit.h"
+
+namespace gonio::proc {
+
+class FitSums {
+public:
+    FitSums(const Family& family, const BrdfData& data, const ModelFitOptions& options);
+
+    [[nodiscard]] std::size_t count() const { return count_; }
+    /// Position of per-band parameter k of band b.
+    [[nodiscard]] std::size_t place(std::size_t k, std::size_t b) const {
+        return shared_ + k * bands_ + b;
+    }
+    [[nodiscard]] const FamilyParameter& parameter(std::size_t place) const;
+    [[nodiscard]] std::vector<double> lower() const;
+    [[nodiscard]] std::vector<double> upper() const;
+    [[nodiscard]] double toValue(std::size_t place, double q) const;
+    /// d value / d q.
+    [[nodiscard]] double slope(std::size_t place, double q) const;
+    [[nodiscard]] FamilyPoint point(std::span<const double> q) const;
+
+    [[nodiscard]] std::size_t residualCount(std::span<const std::uint32_t> rows) const;
+    [[nodiscard]] std::optional<NormalSums> sums(std::span<const double> q,
+                                                 std::span<const std::uint32_t> rows,
+                                                 Wanted wanted) const;
+    /// sum W^2 j j^T, and per band sum W j u_systematic / u: for covariances at the solution.
+    struct Spread {
+        Eigen::MatrixXd squared;
+        Eigen::MatrixXd systematic;  ///< one column per band
+    };
+    [[nodiscard]] Spread spread(std::span<const double> q,
+                                std::span<const std::uint32_t> rows) const;
+
+    /// The best per-band parameters within their bounds at given shared ones (`q` holds both): the
+    /// minimum of the quadratic that the cost is in them. Returns the cost; NaN where there is
+    /// none.
+    double solvePerBand(std::vector<double>& q, std::span<const std::uint32_t> rows) const;
+
+private:
+    struct Weight {
+        double loss;    ///< rho(s)
+        double factor;  ///< rho'(s)
+    };
+    [[nodiscard]] Weight robust(double s) const;
+    /// What the residual of a row and band is divided by, the root of its weight included.
+    [[nodiscard]] double scaleOf(const FitRow& row, std::size_t band) const;
+    /// Calls visit(row, band, slopes, residual, scale) for each value of the rows.
+    template <class Visit>
+    void eachValue(const FamilyPoint& point,
+                   std::span<const std::uint32_t> rows,
+                   Visit&& visit) const;
+
+    const Family* family_;
+    const BrdfData* data_;
+    ModelFitOptions options_;
+    std::size_t shared_;
+    std::size_t perBand_;
+    std::size_t bands_;
+    std::size_t count_;
+    std::array<double, 3> size_{1, 1, 1};  ///< rms of f, for fits without uncertainties
+};
+
+}  // namespace gonio::proc

@@ -1,0 +1,154 @@
+#include "proc/fit/brdf_data.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "proc/fit/family.h"
+#include "proc/fit/model_fit.h"
+#include "proc/models/spec.h"
+#include "tests/support/sample_sets.h"
+
+namespace gonio::proc {
+namespace {
+
+Result<BrdfData> fromCsv(const std::string& text, const DataOptions& options = {}) {
+    const auto points = parsePoints(text, "test");
+    EXPECT_TRUE(points) << points.error().message;
+    return fitDataOf(*points, options);
+}
+
+TEST(BrdfData, ASampleGivesItsPresentCells) {
+    SampleSet set = test::sampleSet([](Radians, const Direction&) { return 0.2; });
+    set.leds[1].bands[0].flags[10] = Flags{Flag::Measured, Flag::Saturated};
+    set.leds[1].bands[1].flags[11] = Flags{};
+    const BrdfData data = fitDataOf(set);
+    EXPECT_EQ(data.incidences.size(), 4U);
+    EXPECT_TRUE(data.uKnown);
+    std::size_t below75 = 0;
+    for (std::size_t i = 0; i < CellGrid::count(); ++i) below75 += CellGrid::place(i).row < 75;
+    EXPECT_EQ(data.rows.size(), 4 * below75);
+    EXPECT_EQ(data.valueCount(), 4 * 3 * below75 - 2);
+    for (const FitRow& row : data.rows) {
+        double weight = 0;
+        for (std::size_t n = 0; n < row.nodeCount; ++n)
+            weight += data.nodes[row.firstNode + n].weight;
+        EXPECT_NEAR(weight, 1, 1e-12);
+    }
+}
+
+/// f as the mean of 12 x 12 places in each cell, by which a lobe of alpha 0.02 is known to 1e-5.
+TEST(BrdfData, CellMeansOfANarrowLobeGiveItsWidthBack) {
+    const auto surface = makeModel("lambert,albedo=0.2+ggx,alpha=0.02,f0=0.04");
+    ASSERT_TRUE(surface);
+    SampleSet set;
+    for (const Radians incidence : {0_deg, 20_deg, 40_deg, 60_deg}) {
+        const Direction wi = Direction::fromSpherical(incidence, Radians(0));
+        LedTable led;
+        led.incidence = incidence;
+        CellSamples cells = CellSamples::missing(CellGrid::count());
+        for (std::size_t cell = 0; cell < cells.size(); ++cell) {
+            if (CellGrid::place(cell).row >= 75) continue;
+            const CellBounds bounds = CellGrid::bounds(cell);
+            double sum = 0;
+            double weights = 0;
+            const bool near =
+                angleBetween({.in = mirrorOf(wi), .out = CellGrid::centre(cell)}) < 20_deg;
+            const int side = near ? 12 : 1;
+            for (int i = 0; i < side * side; ++i) {
+                const double x = (i % side + 0.5) / side;
+                const double y = (i / side + 0.5) / side;
+                const double theta =
+                    bounds.thetaLow.value() + x * (bounds.thetaHigh - bounds.thetaLow).value();
+                const double phi =
+                    bounds.phiLow.value() + y * (bounds.phiHigh - bounds.phiLow).value();
+                const Direction wo = Direction::fromSpherical(Radians(theta), Radians(phi));
+                sum += std::sin(theta) * (*surface)->answer({wi, wo}).f[Band::G];
+                weights += std::sin(theta);
+            }
+            cells.f[cell] = sum / weights;
+            cells.uRandom[cell] = 0.01 * cells.f[cell];
+            cells.uSystematic[cell] = 0.01 * cells.f[cell];
+            cells.flags[cell] = Flags{Flag::Measured};
+        }
+        led.bands = {cells, cells, cells};
+        set.leds.push_back(std::move(led));
+    }
+    const ModelFit fit = fitModel(**familyNamed("lambert+ggx"), fitDataOf(set));
+    ASSERT_TRUE(fit.usable()) << fit.message;
+    EXPECT_NEAR(fit.parameters[0].value, 0.02, 1e-3 * 0.02);
+    EXPECT_LT(fit.chiSquarePerDof(), 1e-3);
+    // All values of a band 1 % higher: so are its albedo and f0, and alpha stays, but for the part
+    // of Schlick's term that f0 does not scale.
+    EXPECT_NEAR(fit.parameters[1].uSystematic, 0.01 * fit.parameters[1].value, 1e-4 * 0.2);
+    EXPECT_LT(fit.parameters[0].uSystematic, 2e-3 * 0.02);
+}
+
+TEST(BrdfData, ScatteredValuesComeWithTheirUncertaintiesOrAnAssumedOne) {
+    const auto known = fromCsv(
+        "theta_i,phi_i,theta_o,phi_o,f,u,flags\n"
+        "10,0,20,0,0.5,0.01,1\n"
+        "10.2,0,30,0,0.4,0.02,1\n"
+        "40,0,20,0,0.3,0.01,3\n"  // saturated
+        "40,0,95,0,0.3,0.01,1\n"  // below the horizon
+        "40,0,25,0,,0.01,1\n"     // missing
+        "40,0,26,0,0.2,0,1\n"     // no uncertainty
+        "40,0,27,0,0.2,0.01,1\n");
+    ASSERT_TRUE(known) << known.error().message;
+    EXPECT_TRUE(known->uKnown);
+    EXPECT_EQ(known->bands, BandCount::One);
+    EXPECT_EQ(known->valueCount(), 3U);
+    EXPECT_EQ(known->leftOut, 4U);
+    EXPECT_EQ(known->incidences.size(), 2U);
+    EXPECT_DOUBLE_EQ(known->rows[1].uRandom[0], 0.02);
+
+    const auto assumed = fromCsv("theta_i,phi_i,theta_o,phi_o,f_r,f_g,f_b\n10,0,20,0,0.5,0.4,0.3\n",
+                                 {.assumedRelative = 0.1});
+    ASSERT_TRUE(assumed) << assumed.error().message;
+    EXPECT_FALSE(assumed->uKnown);
+    EXPECT_EQ(assumed->valueCount(), 3U);
+    EXPECT_NEAR(assumed->rows[0].uRandom[0], 0.05, 0.001);
+}
+
+TEST(BrdfData, BadFilesAreRefused) {
+    const std::string head = "theta_i,phi_i,theta_o,phi_o";
+    for (const std::string& text : {head + "\n1,2,3,4\n",
+                                    head + ",f\n1,2,3,4,banana\n",
+                                    head + ",f,u\n1,2,3,4,0.5,x\n",
+                                    head + ",f_r,f_g\n1,2,3,4,0.5,0.5\n",
+                                    head + ",f,flags\n1,2,3,4,0.5,?\n"}) {
+        const auto data = fromCsv(text);
+        ASSERT_FALSE(data) << text;
+        EXPECT_EQ(data.error().kind, ErrorKind::File);
+    }
+}
+
+TEST(BrdfData, AZemaxTableGivesEachDirectionOnce) {
+    SpecularTable table;
+    table.incidenceDeg = {0, 30};
+    table.azimuthDeg = {0, 90, 180};
+    table.radialDeg = {0, 10, 20};
+    table.planes.resize(1);
+    table.planes[0].f.assign(table.nodeCount(), 0.3);
+    const auto data = fitDataOf(table);
+    ASSERT_TRUE(data) << data.error().message;
+    EXPECT_EQ(data->rows.size(), 2U * (1 + 3 * 2));
+    EXPECT_EQ(data->bands, BandCount::One);
+    EXPECT_FALSE(data->uKnown);
+    table.colour = TableColour::Xyz;
+    EXPECT_FALSE(fitDataOf(table));
+}
+
+TEST(BrdfData, ThinningKeepsTheBrightestAndIsEvenElsewhere) {
+    BrdfData data = fitDataOf(test::sampleSet([](Radians, const Direction&) { return 0.2; }));
+    data.rows[1234].f[1] = 50;
+    const auto rows = thinnedRows(data, {true, true, false, true}, 600);
+    EXPECT_LE(rows.size(), 606U);
+    EXPECT_GE(rows.size(), 590U);
+    EXPECT_NE(std::find(rows.begin(), rows.end(), 1234U), rows.end());
+    for (const std::uint32_t i : rows) EXPECT_NE(data.rows[i].group, 2);
+    EXPECT_EQ(thinnedRows(data, {true, true, true, true}, 1'000'000).size(), data.rows.size());
+}
+
+}  // namespace
+}  // namespace gonio::proc
