@@ -13,11 +13,39 @@
 
 namespace gonio::proc {
 
+/// With the forms of masking and Fresnel known when a loop over an array is compiled.
+template <class P, class Fresnel, Masking Form>
+struct GgxOfForms {
+    Alpha<P> alpha;
+    Fresnel fresnel;
+
+    template <Effort E, class D>
+    [[nodiscard]] Bands<P> f(const Pair<D>& pair) const {
+        const Half<D> half(pair);
+        return fresnel.at(half.cosDiff) * P(ggxD(half, alpha) * ggxV(pair, alpha, Form));
+    }
+};
+
 template <class P>
 struct Ggx {
     Alpha<P> alpha;
     SurfaceFresnel<P> fresnel;
     Masking masking = Masking::HeightCorrelated;
+
+    /// Calls with the GgxOfForms that this is.
+    template <class Call>
+    auto withForms(Call&& call) const {
+        return fresnel.withForm([&]<class Fresnel>(const Fresnel& of) {
+            switch (masking) {
+                case Masking::HeightCorrelated:
+                    return call(GgxOfForms<P, Fresnel, Masking::HeightCorrelated>{alpha, of});
+                case Masking::Separable:
+                    return call(GgxOfForms<P, Fresnel, Masking::Separable>{alpha, of});
+                case Masking::Fast: break;
+            }
+            return call(GgxOfForms<P, Fresnel, Masking::Fast>{alpha, of});
+        });
+    }
 
     template <Effort E, class D>
     [[nodiscard]] Bands<P> f(const Pair<D>& pair) const {

@@ -11,22 +11,46 @@
 
 namespace gonio::proc {
 
-// One loop for the baseline, one for AVX2, one for AVX-512: the loader picks. The attribute works
-// on instantiations of templates; what is inlined into them is compiled for each as well.
+// One loop for the baseline, one for AVX2, one for AVX-512: the loader picks. All that a kernel
+// calls is inlined into each: one call left over would keep the loop scalar.
 template <Effort E, class Kernel, class T>
-[[gnu::target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")]] void evaluateAll(
-    const Kernel& kernel, const PairArrays<T>& pairs, const BandArrays<T>& f) {
+[[gnu::flatten, gnu::target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")]] void
+evaluateAll(const Kernel& kernel, const PairArrays<T>& pairs, const BandArrays<T>& f) {
+    // A copy, and no dependence between iterations: what is written could else be taken for the
+    // kernel's parameters or for a later direction.
+    const Kernel local = kernel;
     const T below = std::numeric_limits<T>::quiet_NaN();
+    const T least = static_cast<T>(kGrazing);
+    const T* const inX = pairs.inX.data();
+    const T* const inY = pairs.inY.data();
+    const T* const inZ = pairs.inZ.data();
+    const T* const outX = pairs.outX.data();
+    const T* const outY = pairs.outY.data();
+    const T* const outZ = pairs.outZ.data();
+    T* const r = f.r.data();
+    T* const g = f.g.data();
+    T* const b = f.b.data();
     const std::size_t count = pairs.inX.size();
+#pragma GCC ivdep
     for (std::size_t i = 0; i < count; ++i) {
-        const T least = static_cast<T>(kGrazing);
-        const Pair<T> pair{{pairs.inX[i], pairs.inY[i], std::max(pairs.inZ[i], least)},
-                           {pairs.outX[i], pairs.outY[i], std::max(pairs.outZ[i], least)}};
-        const Bands<T> value = kernel.template f<E>(pair);
-        const bool above = pairs.inZ[i] > T(0) && pairs.outZ[i] > T(0);
-        f.r[i] = above ? value.r : below;
-        f.g[i] = above ? value.g : below;
-        f.b[i] = above ? value.b : below;
+        const Pair<T> pair{{inX[i], inY[i], std::max(inZ[i], least)},
+                           {outX[i], outY[i], std::max(outZ[i], least)}};
+        const Bands<T> value = local.template f<E>(pair);
+        const bool above = inZ[i] > T(0) && outZ[i] > T(0);
+        r[i] = above ? value.r : below;
+        g[i] = above ? value.g : below;
+        b[i] = above ? value.b : below;
+    }
+}
+
+/// With the kernel's choices taken before the loop, where it has any.
+template <Effort E, class Kernel, class T>
+void evaluateForms(const Kernel& kernel, const PairArrays<T>& pairs, const BandArrays<T>& f) {
+    const auto all = [&](const auto& fixed) { evaluateAll<E>(fixed, pairs, f); };
+    if constexpr (requires { kernel.withForms(all); }) {
+        kernel.withForms(all);
+    } else {
+        all(kernel);
     }
 }
 
@@ -40,10 +64,10 @@ public:
         : path_(path), exact_(std::move(exact)), narrow_(std::move(narrow)) {}
 
     void evaluate(const PairArrays<float>& pairs, const BandArrays<float>& f) const override {
-        atEffort([&]<Effort E>() { evaluateAll<E>(narrow_, pairs, f); });
+        atEffort([&]<Effort E>() { evaluateForms<E>(narrow_, pairs, f); });
     }
     void evaluate(const PairArrays<double>& pairs, const BandArrays<double>& f) const override {
-        atEffort([&]<Effort E>() { evaluateAll<E>(exact_, pairs, f); });
+        atEffort([&]<Effort E>() { evaluateForms<E>(exact_, pairs, f); });
     }
 
     [[nodiscard]] LobeMixture lobes() const override {

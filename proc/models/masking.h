@@ -103,20 +103,26 @@ template <class P>
     return exp(-x * x) * r / (P(2 * std::sqrt(kPi)) * x * (x + r));
 }
 
-template <Effort E, class P>
-[[nodiscard]] P beckmannLambda(const P& slope2) {
+template <class P>
+[[nodiscard]] P exactBeckmannLambda(const P& x) {
     using std::erfc;
     using std::exp;
+    if (x >= P(3)) return beckmannLambdaFar(x);
+    return exp(-x * x) / (P(2 * std::sqrt(kPi)) * x) - P(0.5) * erfc(x);
+}
+
+template <Effort E, class P>
+[[nodiscard]] P beckmannLambda(const P& slope2) {
     using std::sqrt;
     constexpr double kSmallestSlope = 1.0 / 27.3;  // exp(-x^2) is 0 beyond in double
-    if (!(slope2 > P(kSmallestSlope * kSmallestSlope))) return P(0);
-    const P x = P(1) / sqrt(slope2);
+    const P least = P(kSmallestSlope * kSmallestSlope);
+    const P x = P(1) / sqrt(slope2 > least ? slope2 : least);
     if constexpr (E == Effort::Draft) {
-        if (x >= P(1.6)) return P(0);
-        return (P(1) - P(1.259) * x + P(0.396) * x * x) / (P(3.535) * x + P(2.181) * x * x);
+        const P lambda =
+            (P(1) - P(1.259) * x + P(0.396) * x * x) / (P(3.535) * x + P(2.181) * x * x);
+        return x < P(1.6) ? lambda : P(0);
     } else {
-        if (x >= P(3)) return beckmannLambdaFar(x);
-        return exp(-x * x) / (P(2 * std::sqrt(kPi)) * x) - P(0.5) * erfc(x);
+        return slope2 > least ? exactBeckmannLambda(x) : P(0);
     }
 }
 

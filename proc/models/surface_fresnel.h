@@ -14,6 +14,29 @@ enum class FresnelForm {
     Conductor
 };
 
+/// One form, known when a loop over an array is compiled: a choice within it would keep it scalar.
+template <FresnelForm Form, class P>
+struct FresnelOfForm {
+    Bands<P> f0;
+    Bands<P> eta;
+    Bands<P> k;
+
+    template <class D>
+    [[nodiscard]] Bands<P> at(const D& cosine) const {
+        if constexpr (Form == FresnelForm::Schlick) {
+            const D weight = schlickWeight(cosine);
+            return f0.each([&](const P& one) { return P(one + (P(1) - one) * weight); });
+        } else if constexpr (Form == FresnelForm::Dielectric) {
+            return eta.each([&](const P& one) { return fresnelDielectric(one, cosine); });
+        } else {
+            const auto one = [&](const P& n, const P& extinction) {
+                return fresnelConductor(ComplexIndex<P>{n, extinction}, cosine);
+            };
+            return {one(eta.r, k.r), one(eta.g, k.g), one(eta.b, k.b)};
+        }
+    }
+};
+
 template <class P>
 struct SurfaceFresnel {
     FresnelForm form = FresnelForm::Schlick;
@@ -21,21 +44,22 @@ struct SurfaceFresnel {
     Bands<P> eta;  ///< dielectric, conductor
     Bands<P> k;    ///< conductor
 
-    template <class D>
-    [[nodiscard]] Bands<P> at(const D& cosine) const {
+    /// Calls with the FresnelOfForm that this is.
+    template <class Call>
+    auto withForm(Call&& call) const {
         switch (form) {
-            case FresnelForm::Schlick: {
-                const D weight = schlickWeight(cosine);
-                return f0.each([&](const P& one) { return P(one + (P(1) - one) * weight); });
-            }
+            case FresnelForm::Schlick:
+                return call(FresnelOfForm<FresnelForm::Schlick, P>{f0, eta, k});
             case FresnelForm::Dielectric:
-                return eta.each([&](const P& one) { return fresnelDielectric(one, cosine); });
+                return call(FresnelOfForm<FresnelForm::Dielectric, P>{f0, eta, k});
             case FresnelForm::Conductor: break;
         }
-        const auto one = [&](const P& n, const P& extinction) {
-            return fresnelConductor(ComplexIndex<P>{n, extinction}, cosine);
-        };
-        return {one(eta.r, k.r), one(eta.g, k.g), one(eta.b, k.b)};
+        return call(FresnelOfForm<FresnelForm::Conductor, P>{f0, eta, k});
+    }
+
+    template <class D>
+    [[nodiscard]] Bands<P> at(const D& cosine) const {
+        return withForm([&](const auto& fresnel) { return fresnel.at(cosine); });
     }
 };
 
