@@ -147,4 +147,11 @@ struct TradeNumericsOptions {
 /// The models' errors in float and double against reference values, by table, column and alpha.
 Result<void> tradeNumerics(const CommonOptions& common, const TradeNumericsOptions& options);
 
+struct TradePowersOptions {
+    bool quick = false;            ///< fewer powers, angles and repeats
+    std::filesystem::path output;  ///< a folder; empty: no files
+};
+/// Errors and times of every form of cos^n, and the figures of the paper that proposed one.
+Result<void> tradePowers(const CommonOptions& common, const TradePowersOptions& options);
+
 }  // namespace gonio::daemon

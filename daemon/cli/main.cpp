@@ -42,6 +42,7 @@ struct Program {
     PlotOptions plot;
     TradeOptions trade;
     TradeNumericsOptions numerics;
+    TradePowersOptions powers;
     Command chosen;
     bool verbose = false;
 
@@ -307,6 +308,13 @@ void Program::addEvidence() {
     sub->add_option("--reference", numerics.reference, "folder of tables, such as tests/reference")
         ->required();
     sub->add_option("-o,--output", numerics.output, "write the tables here as Markdown");
+
+    sub = command(*parent,
+                  "powers",
+                  "errors and times of the forms of cos^n, and of the paper that proposed one",
+                  [this] { return tradePowers(common, powers); });
+    sub->add_flag("--quick", powers.quick, "fewer powers, angles and repeats");
+    sub->add_option("-o,--output", powers.output, "folder for the tables, CSV and Markdown");
 }
 
 Program::Program() {

@@ -3,9 +3,10 @@
 // without cancellation, u = n t. Errors are against cos^n over [0, pi/2], n in 8..1000, absolute,
 // in double; docs/powers.md has them all, with times.
 //   pow        the library's
-//   full75 full54  2^(n log2 c), polynomials of degree 7/5 and 5/4: 1.1e-7, 3.4e-6; n in 0..1e6
+//   full75 full54  2^(n log2 c), polynomials of degree 7/5 and 5/4: 9.8e-8 (float 1.7e-7), 3.5e-6;
+//              c in [0, 1], n in 0..1e6
 //   lite       2^(-n P(t)), P ~ -log2(1 - t) of degree 5: 1.0e-5; n >= 8
-//   sq8d3 sq8  q(u, t)^8, no division: 1.0e-4, 1.7e-3; n >= 8; sq8 leaves 1.5e-3 far from the peak
+//   sq8d3 sq8  q(u, t)^8, no division: 9.9e-5, 1.7e-3; n >= 8; sq8 leaves 1.5e-3 far from the peak
 //   rec3m4 rec2m4  1 / d(u, t)^4, smooth: 2.0e-3, 1.0e-2; n >= 8
 //   schlick    c / (n - n c + c) [Schlick1994]: 0.20
 //   bps        a cubic of schlick [Zavalniuk2024]: 2.9e-2; as published: 0.9927 at the peak, down
