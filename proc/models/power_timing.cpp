@@ -233,9 +233,16 @@ std::string_view name(PowerCode code) {
 
 std::vector<PowerCode> powerCodes() {
     std::vector<PowerCode> codes{PowerCode::Scalar, PowerCode::Baseline};
+    // Clang 16 does not know the levels by name; these are what tells one from the next.
     __builtin_cpu_init();
-    if (__builtin_cpu_supports("x86-64-v3") != 0) codes.push_back(PowerCode::Avx2);
-    if (__builtin_cpu_supports("x86-64-v4") != 0) codes.push_back(PowerCode::Avx512);
+    const bool avx2 = __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0 &&
+                      __builtin_cpu_supports("bmi") != 0 && __builtin_cpu_supports("bmi2") != 0;
+    const bool avx512 =
+        __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512bw") != 0 &&
+        __builtin_cpu_supports("avx512cd") != 0 && __builtin_cpu_supports("avx512dq") != 0 &&
+        __builtin_cpu_supports("avx512vl") != 0;
+    if (avx2) codes.push_back(PowerCode::Avx2);
+    if (avx2 && avx512) codes.push_back(PowerCode::Avx512);
     return codes;
 }
 
