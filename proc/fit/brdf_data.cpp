@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "proc/fit/budget_shares.h"
 #include "proc/optics/cell_grid.h"
 #include "proc/solve/quadrature.h"
 
@@ -255,7 +256,9 @@ std::size_t BrdfData::valueCount() const {
 
 BrdfData fitDataOf(const SampleSet& set, const DataOptions& options) {
     DataMaker maker(options);
-    for (const LedTable& led : set.leds) {
+    const BudgetShares shares = budgetShares(set);
+    for (std::size_t l = 0; l < set.leds.size(); ++l) {
+        const LedTable& led = set.leds[l];
         const auto group = static_cast<std::uint16_t>(maker.data().incidences.size());
         maker.data().incidences.push_back(led.incidence);
         const Direction wi = lightAt(led.incidence);
@@ -273,8 +276,14 @@ BrdfData fitDataOf(const SampleSet& set, const DataOptions& options) {
                 const CellSamples& cells = led.bands[b];
                 if (!present(cells)) continue;
                 row.f[b] = cells.f[cell];
-                row.uRandom[b] = cells.uRandom[cell];
-                row.uSystematic[b] = cells.uSystematic[cell];
+                const BudgetShare& share = shares[l][b];
+                const double perCell = share.perCell * row.f[b];
+                const double perState = share.perState * row.f[b];
+                row.uState[b] = share.perState;
+                row.uRandom[b] = std::hypot(cells.uRandom[cell], perCell);
+                const double systematic = cells.uSystematic[cell];
+                row.uSystematic[b] = std::sqrt(std::max(
+                    0.0, systematic * systematic - perCell * perCell - perState * perState));
             }
         }
     }

@@ -7,6 +7,10 @@
 // direction, where a lobe may bend within a cell, it is given as nodes of a Gauss rule (2 x 2, up
 // to 4 x 4 within 3 degrees) whose weights sum to 1, elsewhere by its centre. All else is one node.
 //
+// A measured sample's budget says which part of its systematic uncertainty is independent from cell
+// to cell (the white's per direction: it is added to u_random) and which is shared by one LED and
+// band alone (the LED's drift); the rest is common. Without a budget all of it is.
+//
 // Left out: what is missing, saturated, blocked, at or below the horizon, and what has no positive
 // uncertainty in a file that gives uncertainties. A file that gives none gets an assumed one,
 // relative to f with a floor of 1 % of the incidence's median: then `uKnown` is false and
@@ -40,8 +44,9 @@ struct FitRow {
     double solidAngle = 1;    ///< relative to the other rows
     double cosThetaO = 1;
     std::array<double, 3> f{};
-    std::array<double, 3> uRandom{};
-    std::array<double, 3> uSystematic{};
+    std::array<double, 3> uRandom{};      ///< independent of all other rows
+    std::array<double, 3> uState{};       ///< relative to f, shared by the rows of a group and band
+    std::array<double, 3> uSystematic{};  ///< shared by all rows of a band
 };
 
 struct BrdfData {

@@ -146,6 +146,7 @@ std::optional<NormalSums> FitSums::sums(std::span<const double> q,
                                         Wanted wanted) const {
     const FamilyPoint p = point(q);
     NormalSums total = NormalSums::zero(count_);
+    std::vector<std::array<Shared, 3>> shared(data_->incidences.size());
     if (wanted == Wanted::Cost) {
         for (const std::uint32_t i : rows) {
             const FitRow& row = data_->rows[i];
@@ -153,9 +154,17 @@ std::optional<NormalSums> FitSums::sums(std::span<const double> q,
                 family_->f(p, std::span(data_->nodes.data() + row.firstNode, row.nodeCount));
             for (std::size_t b = 0; b < bands_; ++b) {
                 if (!std::isfinite(row.f[b])) continue;
-                const double r = (f.value[b] - row.f[b]) / scaleOf(row, b);
-                total.cost += robust(r * r).loss;
+                const double scale = scaleOf(row, b);
+                const double r = (f.value[b] - row.f[b]) / scale;
+                const Weight weight = robust(r * r);
+                total.cost += weight.loss;
+                const double s = byCovariance() ? stateOf(row, b) / scale : 0;
+                shared[row.group][b].rs += weight.factor * r * s;
+                shared[row.group][b].ss += weight.factor * s * s;
             }
+        }
+        for (const auto& group : shared) {
+            for (const Shared& one : group) total.cost -= one.rs * one.rs / (1 + one.ss);
         }
         return std::isfinite(total.cost) ? std::optional(total) : std::nullopt;
     }
@@ -168,7 +177,20 @@ std::optional<NormalSums> FitSums::sums(std::span<const double> q,
         std::array<double, kMostLocal> j;
         for (std::size_t i = 0; i < local; ++i) j[i] = f.slope[i] / scale;
         bands[b].add(j, r, weight.factor, local);
+        const double s = byCovariance() ? stateOf(row, b) / scale : 0;
+        if (s == 0) return;
+        Shared& one = shared[row.group][b];
+        one.rs += weight.factor * r * s;
+        one.ss += weight.factor * s * s;
+        for (std::size_t i = 0; i < local; ++i) one.js[i] += weight.factor * j[i] * s;
     });
+    for (const auto& group : shared) {
+        for (std::size_t b = 0; b < bands_; ++b) {
+            const Shared& one = group[b];
+            bands[b].cost -= one.rs * one.rs / (1 + one.ss);
+            bands[b].add(one.js, one.rs, -1 / (1 + one.ss), local);
+        }
+    }
     for (std::size_t b = 0; b < bands_; ++b) {
         const auto global = [&](std::size_t i) {
             return at(i < shared_ ? i : place(i - shared_, b));
@@ -191,6 +213,44 @@ std::optional<NormalSums> FitSums::sums(std::span<const double> q,
     return total.finite() ? std::optional(total) : std::nullopt;
 }
 
+void FitSums::shareErrors(const FamilyPoint& point) {
+    state_.clear();
+    std::vector<std::array<double, 3>> all(data_->rows.size());
+    bool any = false;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const FitRow& row = data_->rows[i];
+        const LedBands f =
+            family_->f(point, std::span(data_->nodes.data() + row.firstNode, row.nodeCount));
+        for (std::size_t b = 0; b < bands_; ++b) {
+            all[i][b] = row.uState[b] * f.value[b];
+            any = any || all[i][b] != 0;
+        }
+    }
+    if (any) state_ = std::move(all);
+}
+
+double FitSums::chiSquare(const FamilyPoint& point, std::span<const std::uint32_t> rows) const {
+    std::vector<std::array<Shared, 3>> shared(data_->incidences.size());
+    double sum = 0;
+    for (const std::uint32_t i : rows) {
+        const FitRow& row = data_->rows[i];
+        const LedBands f =
+            family_->f(point, std::span(data_->nodes.data() + row.firstNode, row.nodeCount));
+        for (std::size_t b = 0; b < bands_; ++b) {
+            if (!std::isfinite(row.f[b])) continue;
+            const double r = (f.value[b] - row.f[b]) / row.uRandom[b];
+            const double s = stateOf(row, b) / row.uRandom[b];
+            sum += r * r;
+            shared[row.group][b].rs += r * s;
+            shared[row.group][b].ss += s * s;
+        }
+    }
+    for (const auto& group : shared) {
+        for (const Shared& one : group) sum -= one.rs * one.rs / (1 + one.ss);
+    }
+    return sum;
+}
+
 FitSums::Spread FitSums::spread(std::span<const double> q,
                                 std::span<const std::uint32_t> rows) const {
     Spread all{.squared = Eigen::MatrixXd::Zero(at(count_), at(count_)),
@@ -198,6 +258,9 @@ FitSums::Spread FitSums::spread(std::span<const double> q,
     const std::size_t local = shared_ + perBand_;
     Eigen::VectorXd j(at(local));
     std::vector<Eigen::Index> global(local);
+    std::vector<std::array<Eigen::VectorXd, 3>> shared(data_->incidences.size());
+    std::vector<std::array<Shared, 3>> together(data_->incidences.size());
+    for (auto& group : shared) group.fill(Eigen::VectorXd::Zero(at(count_)));
     eachValue(
         point(q), rows, [&](const FitRow& row, std::size_t b, const BandSlopes& f, double scale) {
             const double r = (f.value - row.f[b]) / scale;
@@ -209,13 +272,25 @@ FitSums::Spread FitSums::spread(std::span<const double> q,
             }
             const double noise = row.uRandom[b] / scale;
             const double shift = row.uSystematic[b] / scale;
+            const double state = stateOf(row, b) / scale;
+            together[row.group][b].rs += weight * shift * state;
+            together[row.group][b].ss += weight * state * state;
             for (std::size_t i = 0; i < local; ++i) {
                 all.systematic(global[i], at(b)) += j(at(i)) * shift;
+                shared[row.group][b](global[i]) += j(at(i)) * state;
                 for (std::size_t k = 0; k < local; ++k) {
                     all.squared(global[i], global[k]) += j(at(i)) * j(at(k)) * noise * noise;
                 }
             }
         });
+    for (std::size_t g = 0; g < shared.size(); ++g) {
+        for (std::size_t b = 0; b < bands_; ++b) {
+            const Eigen::VectorXd& js = shared[g][b];
+            all.squared += js * js.transpose();
+            if (!byCovariance()) continue;
+            all.systematic.col(at(b)) -= js * (together[g][b].rs / (1 + together[g][b].ss));
+        }
+    }
     return all;
 }
 

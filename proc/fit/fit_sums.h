@@ -2,6 +2,15 @@
 // What a fit of a family to rows of data minimises, as sums (proc/solve/normal_fit.h). Parameters
 // are fitted as numbers q: the value itself, or its logarithm; shared ones first, then each
 // per-band one for the bands in turn.
+//
+// The values of one incidence and band share an error of standard uncertainty uState times f. Its
+// part in the covariance of the data is s s^T, s = uState m0 / u, m0 the model of a fit without it:
+// with the measured f in its place, whose noise it would share, a fit comes out too small. By the
+// rank-one inverse
+//   r^T (1 + s s^T)^-1 r = r.r - (r.s)^2 / (1 + s.s),
+// likewise for J^T r and J^T J: nothing more is fitted, and no offset of an LED counts as misfit
+// beyond its uncertainty. Fits that are not weighted by uncertainty leave this out of the sums and
+// have it in their covariance.
 
 #include <cstdint>
 #include <span>
@@ -33,6 +42,17 @@ public:
     [[nodiscard]] std::optional<NormalSums> sums(std::span<const double> q,
                                                  std::span<const std::uint32_t> rows,
                                                  Wanted wanted) const;
+    /// Whether the sums are those of the data's own covariance, so that (J^T W J)^-1 is that of the
+    /// parameters.
+    [[nodiscard]] bool byCovariance() const {
+        return options_.weights.uncertainty && !options_.weights.cosine;
+    }
+    /// From now on with the errors that incidences and bands share, about this model; on rows of
+    /// all data.
+    void shareErrors(const FamilyPoint& point);
+    /// r^T C^-1 r of f against its uncertainties, whatever the weights.
+    [[nodiscard]] double chiSquare(const FamilyPoint& point,
+                                   std::span<const std::uint32_t> rows) const;
     /// sum W^2 j j^T, and per band sum W j u_systematic / u: for covariances at the solution.
     struct Spread {
         Eigen::MatrixXd squared;
@@ -52,6 +72,16 @@ private:
         double factor;  ///< rho'(s)
     };
     [[nodiscard]] Weight robust(double s) const;
+    [[nodiscard]] double stateOf(const FitRow& row, std::size_t band) const {
+        if (state_.empty()) return 0;
+        return state_[static_cast<std::size_t>(&row - data_->rows.data())][band];
+    }
+    /// What the values of an incidence and a band have in common.
+    struct Shared {
+        double rs = 0;  ///< r.s
+        double ss = 0;  ///< s.s
+        std::array<double, kMostLocal> js{};
+    };
     /// What the residual of a row and band is divided by, the root of its weight included.
     [[nodiscard]] double scaleOf(const FitRow& row, std::size_t band) const;
     /// Calls visit(row, band, slopes, residual, scale) for each value of the rows.
@@ -67,7 +97,8 @@ private:
     std::size_t perBand_;
     std::size_t bands_;
     std::size_t count_;
-    std::array<double, 3> size_{1, 1, 1};  ///< rms of f, for fits without uncertainties
+    std::vector<std::array<double, 3>> state_;  ///< uState m0 by row; empty: left out
+    std::array<double, 3> size_{1, 1, 1};       ///< rms of f, for fits without uncertainties
 };
 
 }  // namespace gonio::proc

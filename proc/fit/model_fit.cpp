@@ -133,8 +133,11 @@ void fillUncertainties(const FitSums& sums,
     }
     const Eigen::MatrixXd toValues = slope.asDiagonal() * inverse;
     const double scale = data.uKnown ? 1 : std::max(fit.chiSquarePerDof(), 0.0);
+    const bool plain = sums.byCovariance();
     const Eigen::MatrixXd covariance =
-        scale * toValues * spread.squared(free, free) * toValues.transpose();
+        plain
+            ? Eigen::MatrixXd(scale * toValues * slope.asDiagonal())
+            : Eigen::MatrixXd(scale * toValues * spread.squared(free, free) * toValues.transpose());
     const Eigen::MatrixXd shift = toValues * spread.systematic(free, Eigen::all);
     fit.covariance(free, free) = covariance;
     for (std::size_t i = 0; i < free.size(); ++i) {
@@ -244,6 +247,12 @@ void holdOut(const FitSums& sums,
     }
 }
 
+bool sharesErrors(const BrdfData& data) {
+    return std::any_of(data.rows.begin(), data.rows.end(), [](const FitRow& row) {
+        return std::any_of(row.uState.begin(), row.uState.end(), [](double u) { return u > 0; });
+    });
+}
+
 std::optional<double> rmsOf(const std::vector<HeldOut>& all, double HeldOut::*member) {
     if (all.empty()) return std::nullopt;
     double sum = 0;
@@ -289,7 +298,7 @@ std::optional<double> ModelFit::heldOutEnergyRms() const {
 }
 
 ModelFit fitModel(const Family& family, const BrdfData& data, const ModelFitOptions& options) {
-    const FitSums sums(family, data, options);
+    FitSums sums(family, data, options);
     ModelFit fit{.family = &family};
     fit.parameters = namedParameters(family, sums, data);
     fit.values = data.valueCount();
@@ -309,15 +318,20 @@ ModelFit fitModel(const Family& family, const BrdfData& data, const ModelFitOpti
         return fit;
     }
     const Rows rows = allRows(data);
-    const NormalFit solved = solve(sums, rows, *start, {.iterations = options.maxIterations});
+    NormalFit solved = solve(sums, rows, *start, {.iterations = options.maxIterations});
+    fit.iterations = solved.iterations;
+    if (solved.usable() && sharesErrors(data)) {
+        sums.shareErrors(sums.point(solved.params));
+        solved = solve(sums, rows, solved.params, {.iterations = options.maxIterations});
+        fit.iterations += solved.iterations;
+    }
     fit.status = solved.status;
     fit.message = solved.message;
-    fit.iterations = solved.iterations;
     fit.condition = solved.condition;
     if (!std::isfinite(solved.sums.cost)) return fit;
     fit.point = sums.point(solved.params);
     fit.spec = family.spec(fit.point, data.bands);
-    fit.chiSquare = misfitOf(family, fit.point, data, rows).chiSquare;
+    fit.chiSquare = sums.chiSquare(fit.point, rows);
     for (std::size_t i = 0; i < sums.count(); ++i) {
         FittedParameter& p = fit.parameters[i];
         p.value = sums.toValue(i, solved.params[i]);

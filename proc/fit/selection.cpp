@@ -88,6 +88,13 @@ std::vector<Misfit> worstRegions(const ModelFit& fit, const BrdfData& data) {
 
 double gateFor(double dof) { return std::max(kGate, 1 + 5 * std::sqrt(2 / std::max(dof, 1.0))); }
 
+/// A quarter of what even the best misfits beyond three standard deviations of noise: errors of the
+/// data that their uncertainties do not tell, by which one family may seem better than another.
+double unmodelled(const ModelFit& best) {
+    const double dof = best.degreesOfFreedom();
+    return 0.25 * std::max(0.0, best.chiSquare - dof - 3 * std::sqrt(2 * dof));
+}
+
 /// At least as good in all three, better in one.
 bool dominates(const RankedFit& a, const RankedFit& b) {
     const double timeA = a.nanoseconds.value_or(0);
@@ -128,7 +135,7 @@ void judge(Selection& selection, const BrdfData& data) {
         if (!one.fit.usable()) continue;
         const double more = static_cast<double>(best.parameters.size()) -
                             static_cast<double>(one.fit.parameters.size());
-        const double worse = (one.fit.chiSquare - best.chiSquare) / noise;
+        const double worse = (one.fit.chiSquare - best.chiSquare - unmodelled(best)) / noise;
         one.probability = chiSquareTail(worse, std::max(1.0, more));
         one.rejected = one.probability < kRejection;
     }

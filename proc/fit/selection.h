@@ -2,7 +2,9 @@
 // Which of several families describes data. All are fitted; a family is rejected where the noise
 // cannot explain by how much it fits worse than the best: (chi-square difference) / s^2 beyond what
 // chi-square with max(1, difference in parameters) degrees of freedom exceeds once in 1000, s^2
-// being the best family's chi-square per degree of freedom, at least 1. Of those that are left the
+// being the best family's chi-square per degree of freedom, at least 1. Where even the best misfits
+// beyond three standard deviations, a quarter of that excess is not held against a rival: it comes
+// from errors that the uncertainties do not tell. Of those that are left the
 // one with the fewest parameters is named, of equals the one with the least chi-square.
 //
 // Where even the best misfits by more than the gate (chi-square per degree of freedom above 1.15,

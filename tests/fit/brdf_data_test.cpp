@@ -139,6 +139,29 @@ TEST(BrdfData, AZemaxTableGivesEachDirectionOnce) {
     EXPECT_FALSE(fitDataOf(table));
 }
 
+TEST(BrdfData, ABudgetSplitsTheSystematicUncertainty) {
+    SampleSet set = test::sampleSet([](Radians, const Direction&) { return 0.2; });
+    set.info.budgetJson =
+        R"([{"led":1,"band":"r","components":[)"
+        R"({"name":"a","type":"A","correlation":"per cell","median_relative":0.5},)"
+        R"({"name":"b","type":"B","correlation":"per cell","median_relative":0.003},)"
+        R"({"name":"c","type":"B","correlation":"per state","median_relative":0.004},)"
+        R"({"name":"d","type":"B","correlation":"common","median_relative":0.019}]}])";
+    const BrdfData data = fitDataOf(set);
+    for (const FitRow& row : data.rows) {
+        const bool listed = row.group == 1;
+        EXPECT_NEAR(row.uRandom[0], 0.2 * (listed ? std::hypot(0.01, 0.003) : 0.01), 1e-12);
+        EXPECT_NEAR(row.uState[0], listed ? 0.004 : 0, 1e-12);
+        const double all = std::hypot(row.uSystematic[0], 0.2 * row.uState[0]);
+        EXPECT_NEAR(std::hypot(all, row.uRandom[0]), 0.2 * std::hypot(0.01, 0.02), 1e-12);
+        EXPECT_EQ(row.uState[1], 0);
+    }
+    for (const char* bad : {"banana", "{}", "[1,2]", R"([{"led":99,"band":"r"}])"}) {
+        set.info.budgetJson = bad;
+        EXPECT_EQ(fitDataOf(set).rows[0].uState[0], 0);
+    }
+}
+
 TEST(BrdfData, ThinningKeepsTheBrightestAndIsEvenElsewhere) {
     BrdfData data = fitDataOf(test::sampleSet([](Radians, const Direction&) { return 0.2; }));
     data.rows[1234].f[1] = 50;

@@ -104,6 +104,44 @@ TEST(ModelFit, CoversTheTruthAsOftenAsItsUncertaintySays) {
     EXPECT_NEAR(chiSquare / repeats, 1, 0.01);
 }
 
+/// Each LED and band off by its own draw of 0.5 %, far more than the noise of a mean over cells:
+/// the uncertainties still hold the truth, and chi-square does not take the offsets for misfit.
+TEST(ModelFit, OffsetsOfTheLedsAreInTheUncertaintiesAndNotInChiSquare) {
+    BrdfData truth = dataOf("lambert,albedo=0.3/0.2/0.1+ggx,alpha=0.15,f0=0.05", 250);
+    constexpr double kOffset = 0.005;
+    for (FitRow& row : truth.rows) {
+        for (std::size_t b = 0; b < 3; ++b) row.uState[b] = kOffset;
+    }
+    std::mt19937_64 random(5);
+    std::normal_distribution<double> normal;
+    constexpr int kRepeats = 100;
+    std::array<int, 4> held{};
+    double chiSquare = 0;
+    for (int i = 0; i < kRepeats; ++i) {
+        BrdfData data = test::noisy(truth, 9000 + static_cast<std::uint64_t>(i));
+        std::array<std::array<double, 3>, 4> offset{};
+        for (auto& group : offset) {
+            for (double& one : group) one = kOffset * normal(random);
+        }
+        for (std::size_t r = 0; r < data.rows.size(); ++r) {
+            FitRow& row = data.rows[r];
+            for (std::size_t b = 0; b < 3; ++b) {
+                row.f[b] += offset[row.group][b] * truth.rows[r].f[b];
+            }
+        }
+        const ModelFit fit = fitModel(family("lambert+ggx"), data, withoutHeldOut());
+        ASSERT_EQ(fit.status, FitStatus::Converged) << fit.message;
+        chiSquare += fit.chiSquarePerDof();
+        const std::array<double, 4> expected{0.15, 0.3, 0.2, 0.1};
+        for (std::size_t k = 0; k < expected.size(); ++k) {
+            const FittedParameter& p = fit.parameters[k];
+            held[k] += std::abs(p.value - expected[k]) <= 1.96 * p.uRandom;
+        }
+    }
+    for (const int count : held) EXPECT_GE(count, 95 - 9);  // 4 standard deviations of a binomial
+    EXPECT_NEAR(chiSquare / kRepeats, 1, 0.015);
+}
+
 TEST(ModelFit, WeightedByCosineItsCovarianceStaysTrue) {
     const BrdfData truth = dataOf("lambert,albedo=0.3/0.2/0.1+ggx,alpha=0.15,f0=0.05", 250);
     ModelFitOptions options = withoutHeldOut();

@@ -1,0 +1,59 @@
+#include "proc/fit/budget_shares.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace gonio::proc {
+namespace {
+
+using Json = nlohmann::json;
+
+/// A number at `key`, 0 where there is none.
+double numberAt(const Json& object, const char* key) {
+    const auto found = object.find(key);
+    if (found == object.end() || !found->is_number()) return 0;
+    const auto value = found->get<double>();
+    return std::isfinite(value) ? value : 0;
+}
+
+std::string textAt(const Json& object, const char* key) {
+    const auto found = object.find(key);
+    return found != object.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+BudgetShare shareOf(const Json& components) {
+    BudgetShare share;
+    for (const Json& one : components) {
+        if (!one.is_object()) continue;
+        const double relative = numberAt(one, "median_relative");
+        const std::string correlation = textAt(one, "correlation");
+        if (correlation == "per cell" && textAt(one, "type") == "B") {
+            share.perCell = std::hypot(share.perCell, relative);
+        }
+        if (correlation == "per state") share.perState = std::hypot(share.perState, relative);
+    }
+    return share;
+}
+
+}  // namespace
+
+BudgetShares budgetShares(const SampleSet& set) {
+    BudgetShares shares(set.leds.size());
+    const Json budget = Json::parse(set.info.budgetJson, nullptr, false);
+    if (!budget.is_array()) return shares;
+    for (const Json& state : budget) {
+        if (!state.is_object()) continue;
+        const double led = numberAt(state, "led");
+        const std::string band = textAt(state, "band");
+        const auto components = state.find("components");
+        if (!(led >= 0 && led < static_cast<double>(shares.size()))) continue;
+        if (components == state.end() || !components->is_array()) continue;
+        for (const Band b : kBands) {
+            if (letter(b) != band) continue;
+            shares[static_cast<std::size_t>(led)][index(b)] = shareOf(*components);
+        }
+    }
+    return shares;
+}
+
+}  // namespace gonio::proc
