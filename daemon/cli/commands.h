@@ -132,6 +132,19 @@ struct PlotOptions {
 };
 Result<void> plot(const CommonOptions& common, const PlotOptions& options);
 
+struct FitOptions {
+    std::string file;            ///< .gonio, Zemax, CSV of scattered values, or sample:NAME
+    std::string models = "all";  ///< families, with commas
+    std::string weights = "uncertainty";  ///< or cosine, both, none
+    std::string robust = "none";          ///< or huber, cauchy; with :SCALE
+    std::string assumed = "5%";           ///< relative uncertainty where the file gives none
+    std::string floor;  ///< relative uncertainty added to what the file gives; empty: none
+    std::filesystem::path output;  ///< a folder for the report; empty: none
+};
+/// Fits families of analytic models, ranks them and names the simplest that the noise cannot
+/// reject; "none fits" is an answer like any other.
+Result<void> fit(const CommonOptions& common, const FitOptions& options);
+
 struct TradeOptions {
     bool quick = false;            ///< fewer materials and wanted uncertainties
     std::vector<int> levels;       ///< numbers of LED levels, 1..3; empty: all

@@ -40,6 +40,7 @@ struct Program {
     ConvertOptions convert;
     ExportOptions exported;
     PlotOptions plot;
+    FitOptions fit;
     TradeOptions trade;
     TradeNumericsOptions numerics;
     TradePowersOptions powers;
@@ -58,6 +59,7 @@ struct Program {
     void addDaemon();
     void addSession();
     void addFiles();
+    void addFit();
     void addEvidence();
 };
 
@@ -287,6 +289,22 @@ void Program::addFiles() {
     sub->add_option("-o,--output", plot.output, "folder for the pictures");
 }
 
+void Program::addFit() {
+    CLI::App* sub = command(
+        app, "fit", "fit analytic models, rank them, and choose the simplest that holds", [this] {
+            return daemon::fit(common, fit);
+        });
+    sub->add_option("file", fit.file, "a .gonio, Zemax or CSV file, or sample:NAME")->required();
+    sub->add_option("--models", fit.models, "names of families with commas, or all");
+    sub->add_option("--weights",
+                    fit.weights,
+                    "uncertainty (each value by its u), cosine (for the energy), both or none");
+    sub->add_option("--robust", fit.robust, "none, huber or cauchy, with :SCALE in uncertainties");
+    sub->add_option("--assume", fit.assumed, "relative uncertainty where the file gives none");
+    sub->add_option("--floor", fit.floor, "relative uncertainty added to each value's own");
+    sub->add_option("-o,--output", fit.output, "folder for report and residual maps");
+}
+
 void Program::addEvidence() {
     CLI::App* parent = app.add_subcommand("trade", "the trade of speed for accuracy, measured");
     parent->require_subcommand(1);
@@ -332,6 +350,7 @@ Program::Program() {
     addMeasuring();
     addSim();
     addFiles();
+    addFit();
     addEvidence();
 }
 

@@ -211,6 +211,19 @@ TEST_F(ProgramDocuments, OfWrittenFilesConform) {
     expectConforms({"plot", "model:lambert,albedo=0.5", "-o", (gonio / "plots").string()});
 }
 
+TEST_F(ProgramDocuments, OfFitsConform) {
+    const std::string tile = sampleFile("");
+    const std::filesystem::path out = gonio / "fit";
+    const Json fit =
+        expectConforms({"fit", tile, "--models", "lambert,ggx,lambert+ggx", "-o", out.string()});
+    EXPECT_EQ(fit["models"].size(), 3U);
+    EXPECT_EQ(complaintsOf(Json::parse(test::textOf(out / "fit.json"))), "");
+    for (const char* file : {"fit.md", "residuals.csv", "residuals.svg"}) {
+        EXPECT_GT(test::textOf(out / file).size(), 100U) << file;
+    }
+    expectConforms({"fit", kRealFile, "--models", "lambert+ggx", "--robust", "huber:2"});
+}
+
 TEST_F(ProgramDocuments, OfTheDoctorConforms) {
     EXPECT_EQ(expectConforms({"doctor"})["findings"].size(), 8U);
 }

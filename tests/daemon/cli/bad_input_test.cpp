@@ -54,6 +54,18 @@ TEST_F(BadInput, MissingFileIsNamedByEveryCommandOnFiles) {
     expectRefused(gonio({"eval", kRealFile, "--points", missing}), kFile, {missing});
 }
 
+TEST_F(BadInput, FitsSayWhatIsWanted) {
+    const std::string plain = file("plain.csv", "theta_i,phi_i,theta_o,phi_o\n0,0,10,0\n");
+    expectRefused(
+        gonio({"fit", kRealFile, "--models", "banana"}), kUsage, {"banana", "lambert+ggx"});
+    expectRefused(gonio({"fit", kRealFile, "--weights", "heavy"}), kUsage, {"heavy", "cosine"});
+    expectRefused(gonio({"fit", kRealFile, "--robust", "huber:0"}), kUsage, {"huber:0"});
+    expectRefused(gonio({"fit", kRealFile, "--assume", "-5%"}), kUsage, {"-5%"});
+    expectRefused(gonio({"fit", "model:lambert,albedo=0.5"}), kUsage, {"a formula already"});
+    expectRefused(gonio({"fit", plain}), kFile, {plain, "f_r"});
+    expectRefused(gonio({"fit", (gonio / "none.csv").string()}), kFile, {"none.csv"});
+}
+
 TEST_F(BadInput, FolderIsNotAFile) {
     expectRefused(gonio({"info", (gonio / ".").string()}), kFile, {"not a file"});
 }

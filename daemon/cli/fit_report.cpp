@@ -1,0 +1,215 @@
+#include "daemon/cli/fit_report.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "proc/core/number_text.h"
+#include "proc/fit/residual_map.h"
+#include "proc/models/spec.h"
+
+namespace gonio::daemon {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json orNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json orNull(const std::optional<double>& value) { return value ? orNull(*value) : Json(nullptr); }
+
+Json matrixJson(const Eigen::MatrixXd& matrix) {
+    Json rows = Json::array();
+    for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+        Json row = Json::array();
+        for (Eigen::Index k = 0; k < matrix.cols(); ++k) row.push_back(orNull(matrix(i, k)));
+        rows.push_back(row);
+    }
+    return rows;
+}
+
+Json parametersJson(const proc::ModelFit& fit) {
+    Json all = Json::array();
+    for (const proc::FittedParameter& p : fit.parameters) {
+        const char* bound = p.atLower ? "lower" : "upper";
+        all.push_back({{"name", p.name},
+                       {"band", p.band ? Json(std::string(letter(*p.band))) : Json(nullptr)},
+                       {"unit", p.unit},
+                       {"value", orNull(p.value)},
+                       {"u_random", orNull(p.uRandom)},
+                       {"u_systematic", orNull(p.uSystematic)},
+                       {"lower", p.lower},
+                       {"upper", p.upper},
+                       {"at_bound", p.atLower || p.atUpper ? Json(bound) : Json(nullptr)}});
+    }
+    return all;
+}
+
+Json heldOutJson(const proc::ModelFit& fit) {
+    Json all = Json::array();
+    for (const proc::HeldOut& one : fit.heldOut) {
+        all.push_back({{"incidence_deg", one.incidence.degrees()},
+                       {"rms", orNull(one.rms)},
+                       {"energy_rms", orNull(one.energyRms)},
+                       {"chi_square_mean", orNull(one.chiSquare)}});
+    }
+    return all;
+}
+
+Json residualsJson(const proc::ModelFit& fit, const proc::BrdfData& data) {
+    Json all = Json::array();
+    const auto rms = proc::residualRms(fit, data);
+    for (std::size_t g = 0; g < rms.size(); ++g) {
+        Json bands = Json::array();
+        for (std::size_t b = 0; b < data.bandsUsed(); ++b) bands.push_back(orNull(rms[g][b]));
+        all.push_back({{"incidence_deg", data.incidences[g].degrees()}, {"normalised_rms", bands}});
+    }
+    return all;
+}
+
+Json modelJson(const proc::RankedFit& one, const proc::BrdfData& data) {
+    const proc::ModelFit& fit = one.fit;
+    const bool usable = fit.usable();
+    const auto ifUsable = [&](double value) { return usable ? orNull(value) : Json(nullptr); };
+    return {{"model", fit.family->name()},
+            {"spec", fit.spec},
+            {"status", std::string(name(fit.status))},
+            {"message", fit.message},
+            {"iterations", fit.iterations},
+            {"starts", fit.starts},
+            {"parameters", parametersJson(fit)},
+            {"covariance", matrixJson(fit.covariance)},
+            {"correlation", matrixJson(fit.correlation)},
+            {"condition", orNull(fit.condition)},
+            {"warnings", fit.warnings},
+            {"chi_square", ifUsable(fit.chiSquare)},
+            {"values", fit.values},
+            {"chi_square_per_dof", ifUsable(fit.chiSquarePerDof())},
+            {"aic", ifUsable(fit.aic())},
+            {"bic", ifUsable(fit.bic())},
+            {"rest_rms", ifUsable(one.restRms)},
+            {"held_out", heldOutJson(fit)},
+            {"held_out_rms", orNull(fit.heldOutRms())},
+            {"held_out_energy_rms", orNull(fit.heldOutEnergyRms())},
+            {"residuals", usable ? residualsJson(fit, data) : Json::array()},
+            {"evaluation_ns", orNull(one.nanoseconds)},
+            {"pareto", one.pareto},
+            {"rejected", one.rejected},
+            {"probability", one.probability}};
+}
+
+std::string cell(std::optional<double> value) { return value ? perCent(*value) : ""; }
+
+/// Directions over the hemisphere, by a golden spiral.
+struct SpiralPairs {
+    static constexpr std::size_t kCount = 2048;
+    std::vector<double> inX, inY, inZ, outX, outY, outZ;
+
+    SpiralPairs() {
+        constexpr double kTurn = 2.399963229728653;
+        const double count = static_cast<double>(kCount);
+        for (std::size_t i = 0; i < kCount; ++i) {
+            const double k = static_cast<double>(i);
+            const auto at = [](double z, double phi) {
+                return Direction::fromSpherical(Radians(std::acos(z)), Radians(phi));
+            };
+            const Direction in = at(1 - (k + 0.5) / count, k * kTurn);
+            const Direction out = at((k + 0.5) / count, 1.7 * k * kTurn);
+            inX.push_back(in.x());
+            inY.push_back(in.y());
+            inZ.push_back(in.z());
+            outX.push_back(out.x());
+            outY.push_back(out.y());
+            outZ.push_back(out.z());
+        }
+    }
+};
+
+}  // namespace
+
+Json fitJson(const proc::Selection& selection, const proc::BrdfData& data) {
+    Json models = Json::array();
+    for (const proc::RankedFit& one : selection.ranked) models.push_back(modelJson(one, data));
+    Json worst = Json::array();
+    for (const proc::Misfit& one : selection.worst) {
+        worst.push_back({{"incidence_deg", one.incidence.degrees()},
+                         {"region", one.region},
+                         {"chi_square_mean", orNull(one.chiSquare)},
+                         {"mean_ratio", orNull(one.meanRatio)},
+                         {"values", one.values}});
+    }
+    const auto named = [&](const std::optional<std::size_t>& at) {
+        return at ? Json(selection.ranked[*at].fit.family->name()) : Json(nullptr);
+    };
+    Json incidences = Json::array();
+    for (const Radians incidence : data.incidences) incidences.push_back(incidence.degrees());
+    return {{"schema", "gonio/fit/1"},
+            {"incidences_deg", incidences},
+            {"values", data.valueCount()},
+            {"left_out", data.leftOut},
+            {"assumed_relative_u", data.uKnown ? Json(nullptr) : Json(data.assumedRelative)},
+            {"models", models},
+            {"chosen", named(selection.chosen)},
+            {"best", named(selection.best)},
+            {"gate", selection.gate},
+            {"worst", worst},
+            {"verdict", selection.verdict}};
+}
+
+std::string fitMarkdown(const proc::Selection& selection) {
+    std::string text = selection.verdict + "\n\n";
+    text +=
+        "| model | parameters | held-out rms | energy rms | chi2/dof | AIC | BIC | ns | Pareto | "
+        "spec |\n|---|---|---|---|---|---|---|---|---|---|\n";
+    for (const proc::RankedFit& one : selection.ranked) {
+        const proc::ModelFit& fit = one.fit;
+        if (!fit.usable()) {
+            text += "| " + fit.family->name() + " | " + std::to_string(fit.parameters.size()) +
+                    " | | | | | | | | " + fit.message + " |\n";
+            continue;
+        }
+        text += "| " + fit.family->name() + " | " + std::to_string(fit.parameters.size()) + " | " +
+                cell(fit.heldOutRms()) + " | " + cell(fit.heldOutEnergyRms()) + " | " +
+                fixed(fit.chiSquarePerDof(), 3) + " | " + fixed(fit.aic(), 0) + " | " +
+                fixed(fit.bic(), 0) + " | " + (one.nanoseconds ? fixed(*one.nanoseconds, 1) : "") +
+                " | " + (one.pareto ? "yes" : "") + " | `" + fit.spec + "` |\n";
+    }
+    if (!selection.worst.empty()) {
+        text +=
+            "\n| incidence | region | mean (f - model)^2 / u^2 | f / model | values |\n"
+            "|---|---|---|---|---|\n";
+    }
+    for (const proc::Misfit& one : selection.worst) {
+        text += "| " + fixed(one.incidence.degrees(), 1) + " deg | " + one.region + " | " +
+                fixed(one.chiSquare, 2) + " | " + fixed(one.meanRatio, 3) + " | " +
+                std::to_string(one.values) + " |\n";
+    }
+    return text;
+}
+
+std::optional<double> evaluationNanoseconds(const std::string& spec) {
+    const auto model = proc::makeModel(spec);
+    if (!model) return std::nullopt;
+    static const SpiralPairs pairs;
+    std::vector<double> r(SpiralPairs::kCount);
+    std::vector<double> g = r;
+    std::vector<double> b = r;
+    std::array<double, 5> times{};
+    for (double& time : times) {
+        const auto begin = std::chrono::steady_clock::now();
+        (*model)->evaluate(proc::PairArrays<double>{.inX = pairs.inX,
+                                                    .inY = pairs.inY,
+                                                    .inZ = pairs.inZ,
+                                                    .outX = pairs.outX,
+                                                    .outY = pairs.outY,
+                                                    .outZ = pairs.outZ},
+                           proc::BandArrays<double>{.r = r, .g = g, .b = b});
+        const std::chrono::duration<double, std::nano> spent =
+            std::chrono::steady_clock::now() - begin;
+        time = spent.count() / static_cast<double>(SpiralPairs::kCount);
+    }
+    std::sort(times.begin(), times.end());
+    return times[2];
+}
+
+}  // namespace gonio::daemon
