@@ -254,12 +254,12 @@ double FitSums::chiSquare(const FamilyPoint& point, std::span<const std::uint32_
 FitSums::Spread FitSums::spread(std::span<const double> q,
                                 std::span<const std::uint32_t> rows) const {
     Spread all{.squared = Eigen::MatrixXd::Zero(at(count_), at(count_)),
+               .plain = Eigen::MatrixXd::Zero(at(count_), at(count_)),
                .systematic = Eigen::MatrixXd::Zero(at(count_), at(bands_))};
     const std::size_t local = shared_ + perBand_;
     Eigen::VectorXd j(at(local));
     std::vector<Eigen::Index> global(local);
     std::vector<std::array<Eigen::VectorXd, 3>> shared(data_->incidences.size());
-    std::vector<std::array<Shared, 3>> together(data_->incidences.size());
     for (auto& group : shared) group.fill(Eigen::VectorXd::Zero(at(count_)));
     eachValue(
         point(q), rows, [&](const FitRow& row, std::size_t b, const BandSlopes& f, double scale) {
@@ -273,12 +273,11 @@ FitSums::Spread FitSums::spread(std::span<const double> q,
             const double noise = row.uRandom[b] / scale;
             const double shift = row.uSystematic[b] / scale;
             const double state = stateOf(row, b) / scale;
-            together[row.group][b].rs += weight * shift * state;
-            together[row.group][b].ss += weight * state * state;
             for (std::size_t i = 0; i < local; ++i) {
                 all.systematic(global[i], at(b)) += j(at(i)) * shift;
                 shared[row.group][b](global[i]) += j(at(i)) * state;
                 for (std::size_t k = 0; k < local; ++k) {
+                    all.plain(global[i], global[k]) += j(at(i)) * j(at(k));
                     all.squared(global[i], global[k]) += j(at(i)) * j(at(k)) * noise * noise;
                 }
             }
@@ -287,8 +286,6 @@ FitSums::Spread FitSums::spread(std::span<const double> q,
         for (std::size_t b = 0; b < bands_; ++b) {
             const Eigen::VectorXd& js = shared[g][b];
             all.squared += js * js.transpose();
-            if (!byCovariance()) continue;
-            all.systematic.col(at(b)) -= js * (together[g][b].rs / (1 + together[g][b].ss));
         }
     }
     return all;

@@ -56,6 +56,7 @@ public:
     /// sum W^2 j j^T, and per band sum W j u_systematic / u: for covariances at the solution.
     struct Spread {
         Eigen::MatrixXd squared;
+        Eigen::MatrixXd plain;       ///< J^T W^2 J, without shared errors
         Eigen::MatrixXd systematic;  ///< one column per band
     };
     [[nodiscard]] Spread spread(std::span<const double> q,

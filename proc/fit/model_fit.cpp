@@ -138,7 +138,10 @@ void fillUncertainties(const FitSums& sums,
         plain
             ? Eigen::MatrixXd(scale * toValues * slope.asDiagonal())
             : Eigen::MatrixXd(scale * toValues * spread.squared(free, free) * toValues.transpose());
-    const Eigen::MatrixXd shift = toValues * spread.systematic(free, Eigen::all);
+    // Of a fit without the shared errors: with them an LED's offset would take up what is common.
+    const Eigen::MatrixXd shift =
+        slope.asDiagonal() *
+        spread.plain(free, free).ldlt().solve(spread.systematic(free, Eigen::all)).eval();
     fit.covariance(free, free) = covariance;
     for (std::size_t i = 0; i < free.size(); ++i) {
         const auto row = static_cast<Index>(i);
