@@ -15,7 +15,7 @@ struct NumberTable {
 };
 
 /// A File error names the file, the line and what was wanted: a name per column, a finite number in
-/// every cell, at most 100,000 rows. Empty lines at the end are taken.
+/// every cell, at most 100,000 rows. Empty lines are passed over.
 [[nodiscard]] Result<NumberTable> readNumberTable(const std::filesystem::path& file);
 
 }  // namespace gonio

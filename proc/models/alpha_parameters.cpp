@@ -6,17 +6,23 @@
 
 namespace gonio::proc {
 
-AlphaNumbers alphaOf(SpecParameters& p) {
-    if (p.has("roughness")) {
-        const double roughness = p.number("roughness", {std::sqrt(kAlphaRange.low), 1});
-        return {roughness * roughness, roughness * roughness};
-    }
+AlphaNumbers slopeAlphaOf(SpecParameters& p) {
     if (p.has("alpha_x") || p.has("alpha_y")) {
+        if (p.has("alpha")) p.complain("alpha excludes alpha_x and alpha_y");
         const double x = p.number("alpha_x", kAlphaRange);
         return {x, p.number("alpha_y", kAlphaRange)};
     }
     const double alpha = p.number("alpha", kAlphaRange);
     return {alpha, alpha};
+}
+
+AlphaNumbers alphaOf(SpecParameters& p) {
+    if (!p.has("roughness")) return slopeAlphaOf(p);
+    for (const std::string other : {"alpha", "alpha_x", "alpha_y"}) {
+        if (p.has(other)) p.complain("roughness excludes " + other);
+    }
+    const double roughness = p.number("roughness", {std::sqrt(kAlphaRange.low), 1});
+    return {roughness * roughness, roughness * roughness};
 }
 
 namespace {
@@ -42,7 +48,9 @@ void readIndex(SpecParameters& p, FresnelNumbers& numbers) {
 FresnelNumbers fresnelOf(SpecParameters& p) {
     FresnelNumbers numbers;
     const bool exact = p.choice("fresnel", {"schlick", "exact"}) == 1;
+    if (p.has("k") && !p.has("eta")) p.complain("k needs eta");
     if (p.has("eta") || p.has("nk")) {
+        if (p.has("f0")) p.complain("f0 excludes eta and nk");
         const bool conductor = p.has("k") || p.has("nk");
         readIndex(p, numbers);
         for (Band b : kBands) {

@@ -9,10 +9,10 @@ namespace gonio::proc {
 struct AlphaNumbers {
     double x;
     double y;
-
-    [[nodiscard]] bool isotropic() const { return x == y; }
 };
-/// roughness (alpha = roughness^2), alpha_x and alpha_y, or alpha.
+/// alpha, or alpha_x and alpha_y.
+[[nodiscard]] AlphaNumbers slopeAlphaOf(SpecParameters& p);
+/// The same, or roughness: alpha = roughness^2.
 [[nodiscard]] AlphaNumbers alphaOf(SpecParameters& p);
 
 struct FresnelNumbers {

@@ -2,9 +2,9 @@
 // Blinn's lobe about the half vector [Blinn1977], with the normalisation of renderers:
 //   f = kd / pi + ks (n + 8) / (8 pi) (n.h)^n, n in [1, 1e6].
 // The power is one of the forms of powers.h; without one, that of the effort. Reciprocal.
-// Directional albedo of the lobe: 1 + O(1/n) times ks at normal incidence (1.03 at n = 8), more at
-// grazing: not strictly energy conserving. The published forms keep their faults (bps is negative
-// in places: cut at 0 here, as f may not be).
+// Directional albedo of the lobe: 1.075 ks at the most (n = 8, normal incidence), less at other n
+// and toward grazing: not strictly energy conserving. The published forms keep their faults (bps is
+// negative in places: cut at 0 here, as f may not be).
 
 #include "proc/models/cosine_lobe.h"
 #include "proc/models/sampling.h"

@@ -29,7 +29,7 @@ struct CatalogueEntry {
 
 inline constexpr ValueRange kShare{0, 1};
 inline constexpr ValueRange kAlphaRange{1e-7, 1};
-inline constexpr ValueRange kFactorRange{0, 1e6};
+inline constexpr ValueRange kFactorRange{0, 1e3};  ///< a float holds the sharpest lobe times it
 inline constexpr ValueRange kExponentRange{0, 1e6};
 inline constexpr ValueRange kIndexRange{1e-3, 1e3};
 

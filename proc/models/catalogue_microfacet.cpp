@@ -56,8 +56,12 @@ Lobe makeGgx(SpecParameters& p, EvalPath path) {
 Lobe makeBeckmann(SpecParameters& p, EvalPath path) {
     const AlphaNumbers alpha = alphaOf(p);
     const FresnelNumbers fresnel = fresnelOf(p);
-    const auto masking =
-        static_cast<Masking>(p.choice("masking", {"height-correlated", "separable"}));
+    const std::size_t form = p.choice("masking", {"height-correlated", "separable", "fast"});
+    const auto masking = static_cast<Masking>(form);
+    if (masking == Masking::Fast) p.complain("masking=fast is GGX's alone");
+    if (p.choice("multiscatter", {"none", "kulla-conty", "fdez-aguera"}) != 0) {
+        p.complain("multiscatter is for ggx alone, whose albedo it knows");
+    }
     return kernelModel<Beckmann>(path, [&]<class P>() {
         return Beckmann<P>{as<P>(alpha), fresnel.as<P>(), masking};
     });
@@ -65,9 +69,9 @@ Lobe makeBeckmann(SpecParameters& p, EvalPath path) {
 
 Lobe makeWalter(SpecParameters& p, EvalPath path) {
     const double alpha = p.number("alpha", kAlphaRange);
-    const double eta = p.number("eta", kIndexRange);
+    const LedBands eta = p.bands("eta", kIndexRange);
     return kernelModel<Walter>(path, [&]<class P>() {
-        return Walter<P>{static_cast<P>(alpha), static_cast<P>(eta)};
+        return Walter<P>{static_cast<P>(alpha), Bands<P>::of(eta)};
     });
 }
 

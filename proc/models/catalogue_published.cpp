@@ -11,7 +11,6 @@ namespace {
 Lobe makeMerlFit(SpecParameters& p, EvalPath path) {
     const std::string file = p.text("F");
     const std::string material = p.text("material");
-    if (file.empty()) return nullptr;  // complained of
     const Result<std::vector<PublishedFit>> fits = readPublishedFits(file);
     if (!fits) {
         p.refuse(fits.error());
@@ -27,7 +26,7 @@ Lobe makeMerlFit(SpecParameters& p, EvalPath path) {
     }
     Result<Lobe> lobe = makeModel(found->spec, path);
     if (lobe) return std::move(*lobe);
-    p.refuse(lobe.error().in(material));
+    p.refuse({ErrorKind::File, "'" + file + "': " + material + ": " + lobe.error().message});
     return nullptr;
 }
 

@@ -52,7 +52,7 @@ struct CookTorrance {
 template <class P>
 struct Low {
     P roughness;
-    P eta;
+    Bands<P> eta;
     Bands<P> ks;
 
     static constexpr bool kByEffort = true;
@@ -61,7 +61,9 @@ struct Low {
     [[nodiscard]] Bands<P> f(const Pair<D>& pair) const {
         const Half<D> half(pair);
         const P lobe = grooveLobe<E>(roughness, pair, half);
-        return ks * P(fresnelDielectric(eta, half.cosDiff) * lobe);
+        const Bands<P> fresnel =
+            eta.each([&](const P& one) { return fresnelDielectric(one, half.cosDiff); });
+        return ks * fresnel * lobe;
     }
 
     [[nodiscard]] LobeMixture lobes() const {

@@ -13,7 +13,8 @@
 //   1 - E = the same with G1 Lambda_i / (1 + Lambda_i + Lambda_o) in place of G2, plus all that
 //   would leave below the horizon (in closed form over psi),
 // is integrated by itself: it is 7e-6 at alpha 1e-3, where a difference would have lost it.
-// Draft 64, standard 256 evaluations (1e-3, 1.5e-5 absolute), reference tanh-sinh (1e-11).
+// Draft 64 evaluations (1e-3 of E, 2.3e-3 of A and B), standard 256 (1.5e-5), reference tanh-sinh
+// (1e-11); all absolute.
 
 #include <cstddef>
 #include <vector>

@@ -6,7 +6,9 @@
 // (1 - cos_d)^5. alpha_x = max(0.001, r^2 / q), alpha_y = max(0.001, r^2 q), q = sqrt(1 - 0.9
 // anisotropic). F by Schlick from f0 = specular 0.08 lerp(1, tint, specular_tint), `base` for
 // metals. base is linear (Burley's code takes it as sRGB); the luminance for tints is 0.3 r + 0.6 g
-// + 0.1 b. Reciprocal. Not energy conserving (its diffuse alone reaches 1.558 at grazing).
+// + 0.1 b. Reciprocal. Not energy conserving: its
+// diffuse alone reaches 1.558 at grazing, with sheen a grey one 1.71, and a saturated one, whose
+// tint is its colour over its luminance, 2.4.
 
 #include "proc/models/burley_diffuse.h"
 #include "proc/models/clearcoat.h"

@@ -20,11 +20,7 @@ template <class P, class D>
     return f0 + (f90 - f0) * schlickWeight(cosine);
 }
 
-/// (n - 1)^2 / (n + 1)^2 of a dielectric against air, and its inverse for f0 in [0, 1).
-template <class P>
-[[nodiscard]] P f0OfEta(const P& eta) {
-    return squared((eta - P(1)) / (eta + P(1)));
-}
+/// The index against air of a dielectric of this f0 in [0, 1).
 template <class P>
 [[nodiscard]] P etaOfF0(const P& f0) {
     using std::sqrt;

@@ -19,7 +19,9 @@ struct FujiiOrenNayar {
         const D s = pair.in.x * pair.out.x + pair.in.y * pair.out.y;
         const D t = s > D(0) ? std::max(pair.in.z, pair.out.z) : D(1);
         const P a = P(1) / (P(1) + P(0.5 - 2 / (3 * kPi)) * r);
-        return albedo * P(a * P(1 / kPi) * (P(1) + r * (s / t)));
+        // s is at least -1 but for rounding.
+        const P shaded = P(1) + r * std::max(D(-1), s / t);
+        return albedo * P(a * P(1 / kPi) * shaded);
     }
 };
 

@@ -8,6 +8,7 @@
 // summed of squares, so that a sharp lobe keeps its digits.
 
 #include "proc/models/cosine_lobe.h"
+#include "proc/models/sampling.h"
 
 namespace gonio::proc {
 
@@ -34,6 +35,12 @@ struct Lafortune {
         const NearOne<P> x{.c = c, .t = gap * P(0.5)};
         const P norm = (n + P(2)) * P(1 / (2 * kPi));
         return ks * P(norm * cosinePower<E>(n, x));
+    }
+
+    /// About the mirror direction, from which the lobe leans less than its width for what is
+    /// fitted.
+    [[nodiscard]] LobeMixture lobes() const {
+        return {{meanOf(ks), MirrorPowerLobe{n}}, {0.1 * meanOf(ks), CosineLobe{}}};
     }
 };
 

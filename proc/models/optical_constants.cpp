@@ -59,6 +59,20 @@ Result<std::vector<Row>> tableOf(std::istream& in) {
     return rows;
 }
 
+/// Linear between rows; empty outside the table.
+std::optional<Row> rowAt(const std::vector<Row>& rows, double micrometres) {
+    const auto above = std::find_if(
+        rows.begin(), rows.end(), [&](const Row& row) { return row.micrometres >= micrometres; });
+    if (above == rows.end()) return std::nullopt;
+    if (above->micrometres == micrometres) return *above;
+    if (above == rows.begin()) return std::nullopt;
+    const Row& low = *(above - 1);
+    const double share = (micrometres - low.micrometres) / (above->micrometres - low.micrometres);
+    return Row{.micrometres = micrometres,
+               .eta = low.eta + (above->eta - low.eta) * share,
+               .k = low.k + (above->k - low.k) * share};
+}
+
 }  // namespace
 
 Result<OpticalConstants> readOpticalConstants(const std::filesystem::path& file) {
@@ -67,20 +81,25 @@ Result<OpticalConstants> readOpticalConstants(const std::filesystem::path& file)
     if (!in) return Error{ErrorKind::File, name + ": cannot be opened"};
     const Result<std::vector<Row>> rows = tableOf(in);
     if (!rows) return rows.error().in(name);
+    if (rows->empty()) return Error{ErrorKind::File, name + ": the table has no rows"};
     OpticalConstants constants;
     for (Band band : kBands) {
         const double wanted = nanometres(band) * 1e-3;
-        const auto above = std::find_if(
-            rows->begin(), rows->end(), [&](const Row& r) { return r.micrometres >= wanted; });
-        if (above == rows->begin() || above == rows->end()) {
+        const std::optional<Row> at = rowAt(*rows, wanted);
+        if (!at) {
             return Error{ErrorKind::File,
-                         name + ": the table does not reach to " + shortest(nanometres(band)) +
-                             " nm on both sides"};
+                         name + ": the table goes from " + shortest(rows->front().micrometres) +
+                             " to " + shortest(rows->back().micrometres) + " um, wanted " +
+                             shortest(nanometres(band)) + " nm"};
         }
-        const Row& low = *(above - 1);
-        const double share = (wanted - low.micrometres) / (above->micrometres - low.micrometres);
-        constants.eta[band] = low.eta + (above->eta - low.eta) * share;
-        constants.k[band] = low.k + (above->k - low.k) * share;
+        if (!(at->eta >= 1e-3 && at->eta <= 1e3 && at->k >= 0 && at->k <= 1e3)) {
+            return Error{ErrorKind::File,
+                         name + ": at " + shortest(nanometres(band)) +
+                             " nm n = " + shortest(at->eta) + ", k = " + shortest(at->k) +
+                             ": wanted n in [0.001, 1000], k in [0, 1000]"};
+        }
+        constants.eta[band] = at->eta;
+        constants.k[band] = at->k;
     }
     return constants;
 }

@@ -134,6 +134,8 @@ std::optional<Direction> drawDirection(const LobeMixture& mixture,
 
 double drawDensity(const LobeMixture& mixture, const LightView& pair) {
     if (!pair.in.aboveHorizon() || !pair.out.aboveHorizon()) return 0;
+    const double total = totalWeight(mixture);
+    if (!(total > 0)) return 0;
     const Seen seen(pair);
     double sum = 0;
     for (const WeightedLobe& one : mixture) {
@@ -141,7 +143,7 @@ double drawDensity(const LobeMixture& mixture, const LightView& pair) {
         sum += one.weight *
                std::visit([&](const auto& lobe) { return density(lobe, seen); }, one.lobe);
     }
-    return sum / totalWeight(mixture);
+    return sum / total;
 }
 
 }  // namespace gonio::proc

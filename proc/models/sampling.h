@@ -52,12 +52,12 @@ struct Uniforms {
     double v;
 };
 
-/// wi above the horizon, a mixture with at least one positive weight.
+/// wi above the horizon. Empty as well where no weight is positive.
 [[nodiscard]] std::optional<Direction> drawDirection(const LobeMixture& mixture,
                                                      const Direction& wi,
                                                      const Uniforms& random);
-/// 1/sr, of drawing pair.out at pair.in; 0 below the horizon. Its integral is 1 less the share of
-/// draws that are empty.
+/// 1/sr, of drawing pair.out at pair.in; 0 below the horizon and where no weight is positive. Its
+/// integral is 1 less the share of draws that are empty.
 [[nodiscard]] double drawDensity(const LobeMixture& mixture, const LightView& pair);
 
 }  // namespace gonio::proc

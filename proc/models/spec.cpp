@@ -57,6 +57,7 @@ Result<Lobe> makeLobe(std::string_view text, EvalPath path) {
     SpecParameters parameters(name, items);
     Lobe lobe = found->make(parameters, path);
     if (auto error = parameters.verdict()) return *error;
+    if (lobe == nullptr) return Error{ErrorKind::Internal, "model " + name + ": was not made"};
     return lobe;
 }
 

@@ -70,7 +70,11 @@ double SpecParameters::numberOr(const std::string& key, ValueRange range, double
     return otherwise;
 }
 
-std::string SpecParameters::text(const std::string& key) { return take(key); }
+std::string SpecParameters::text(const std::string& key) {
+    std::string text = take(key);
+    if (text.empty()) complain("parameter '" + key + "' is empty");
+    return text;
+}
 
 std::size_t SpecParameters::choice(const std::string& key,
                                    const std::vector<std::string>& choices) {

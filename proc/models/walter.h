@@ -12,14 +12,15 @@ namespace gonio::proc {
 template <class P>
 struct Walter {
     P alpha;
-    P eta;
+    Bands<P> eta;
 
     template <Effort E, class D>
     [[nodiscard]] Bands<P> f(const Pair<D>& pair) const {
         const Half<D> half(pair);
         const Alpha<P> both = Alpha<P>::isotropic(alpha);
-        return Bands<P>::all(fresnelDielectric(eta, half.cosDiff) * ggxD(half, both) *
-                             ggxV(pair, both, Masking::Separable));
+        const P lobe = ggxD(half, both) * ggxV(pair, both, Masking::Separable);
+        return eta.each(
+            [&](const P& one) { return P(fresnelDielectric(one, half.cosDiff) * lobe); });
     }
 
     [[nodiscard]] LobeMixture lobes() const {

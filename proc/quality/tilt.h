@@ -35,8 +35,7 @@ struct TiltLobe {
     double f0 = 0.04;
 };
 
-/// A normal, and its standard uncertainty about either axis (k = 1).
-/// Standard uncertainty of a normal that is turned toward x and toward y.
+/// Standard uncertainty (k = 1) of a normal that is turned toward x and toward y.
 struct TurnUncertainty {
     Radians towardX, towardY;
 
@@ -48,6 +47,7 @@ struct TurnUncertainty {
     }
 };
 
+/// A normal, and how well it is known.
 struct Normal {
     Direction direction;
     Radians u;  ///< per axis, the larger

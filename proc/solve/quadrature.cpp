@@ -1,12 +1,11 @@
 #include "proc/solve/quadrature.h"
 
 #include <cmath>
-#include <numbers>
+
+#include "proc/core/units.h"
 
 namespace gonio::proc {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 struct Legendre {
     double value;
@@ -41,9 +40,7 @@ std::vector<QuadratureNode> gaussLegendre(std::size_t n) {
             if (std::abs(change) < 1e-16) break;
         }
         const double slope = legendre(n, x).slope;
-        nodes.push_back({.x = (1 - x) / 2,
-                         .oneMinusX = (1 + x) / 2,
-                         .weight = 1 / ((1 - x) * (1 + x) * slope * slope)});
+        nodes.push_back({.x = (1 - x) / 2, .weight = 1 / ((1 - x) * (1 + x) * slope * slope)});
     }
     return nodes;
 }
@@ -57,10 +54,9 @@ std::vector<QuadratureNode> tanhSinh(std::size_t n) {
     for (std::size_t i = 0; i <= 2 * n; ++i) {
         const double t = (static_cast<double>(i) - static_cast<double>(n)) * step;
         const double twice = kPi * std::sinh(t);
-        const QuadratureNode node{
-            .x = 1 / (1 + std::exp(-twice)), .oneMinusX = 1 / (1 + std::exp(twice)), .weight = 0};
-        nodes.push_back(node);
-        nodes.back().weight = step * kPi * std::cosh(t) * node.x * node.oneMinusX;
+        const double x = 1 / (1 + std::exp(-twice));
+        const double oneMinusX = 1 / (1 + std::exp(twice));
+        nodes.push_back({.x = x, .weight = step * kPi * std::cosh(t) * x * oneMinusX});
         sum += nodes.back().weight;
     }
     for (QuadratureNode& node : nodes) node.weight /= sum;

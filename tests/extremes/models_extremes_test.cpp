@@ -1,5 +1,6 @@
-// With floating-point traps on: no NaN, no infinity, no negative value anywhere in the domains, in
-// double and float, at every effort, one by one and in arrays.
+// No NaN, no infinity, no negative value anywhere in the domains, in double and float, at every
+// effort: one by one with floating-point traps on; in arrays by their values, as a loop over
+// vectors works out both sides of a choice and the lanes past its end.
 
 #include <cfenv>
 
@@ -29,6 +30,14 @@ std::vector<Direction> edges() {
     for (double theta : {0.0, 1e-160, 1e-30, 1e-12, 1e-7, 1e-3, 0.7, 1.57}) {
         for (double phi : {0.0, 1e-9, 2.0, kPi}) {
             all.push_back(Direction::fromSpherical(Radians(theta), Radians(phi)));
+        }
+    }
+    // Rounding takes the cosine of opposite directions at the horizon below -1 at some azimuths.
+    for (int i = 0; i < 12; ++i) {
+        const double phi = 0.37 * i;
+        for (double sign : {1.0, -1.0}) {
+            all.push_back(
+                *Direction::fromVector({sign * std::cos(phi), sign * std::sin(phi), 1e-9}));
         }
     }
     for (double mu : {1e-3, 1e-6, 1e-9, 1e-12, 1e-38, 1e-45, 1e-300, 5e-324}) {
@@ -133,9 +142,6 @@ TEST(ModelExtremes, HaveFiniteDensitiesOfDraws) {
         const auto made = makeModel(spec);
         ASSERT_TRUE(made);
         const LobeMixture lobes = (*made)->lobes();
-        bool any = false;
-        for (const WeightedLobe& one : lobes) any = any || one.weight > 0;
-        if (!any) continue;
         const Traps on;
         for (const Direction& wi : edges()) {
             if (!wi.aboveHorizon()) continue;

@@ -203,7 +203,7 @@ INSTANTIATE_TEST_SUITE_P(
         Limit{"WardOfEqualAlphasIsIsotropic",
               "ward,alpha_x=0.3,alpha_y=0.3,ks=0.5",
               "ward,alpha=0.3,ks=0.5"},
-        Limit{"PhongOfN0IsConstantInFront", "phong,kd=0.5,ks=0,n=10", "lambert,albedo=0.5"},
+        Limit{"PhongWithoutALobeIsLambert", "phong,kd=0.5,ks=0,n=10", "lambert,albedo=0.5"},
         Limit{"LafortuneAlongTheMirrorIsLafortunePhong",
               "lafortune,cxy=-1,cz=1,n=25,ks=0.4",
               "lafortune-phong,kd=0,ks=0.4,n=25"},

@@ -71,6 +71,8 @@ TEST_F(MaterialFiles, OpticalConstantsSayWhatIsWrong) {
     EXPECT_NE(complaint(head + "    0.4 1 banana\n").find("no row"), std::string::npos);
     EXPECT_NE(complaint(head + "    0.6 1 2\n    0.5 1 2\n").find("must rise"), std::string::npos);
     EXPECT_NE(complaint(head + "    0.4 1 2\n    0.5 1 2\n").find("630 nm"), std::string::npos);
+    EXPECT_NE(complaint(head).find("no rows"), std::string::npos);
+    EXPECT_NE(complaint(head + "    0.4 -1 2\n    0.7 -1 2\n").find("n = -1"), std::string::npos);
     EXPECT_NE(errorOf("ggx,alpha=0.1,nk=/nowhere.yml").find("/nowhere.yml"), std::string::npos);
 }
 
@@ -113,6 +115,8 @@ TEST_F(MaterialFiles, PublishedFitsBecomeSpecsOfOurModels) {
     EXPECT_NE(errorOf("merl-fit,material=c,F=" + file.string()).find("no material 'c'"),
               std::string::npos);
     EXPECT_NE(errorOf("merl-fit,material=c").find("'F' is missing"), std::string::npos);
+    EXPECT_NE(errorOf("merl-fit,material=c,F=").find("'F' is empty"), std::string::npos);
+    EXPECT_NE(errorOf("tabulated,F=").find("'F' is empty"), std::string::npos);
 }
 
 TEST_F(MaterialFiles, PublishedFitsSayWhatIsWrong) {
