@@ -25,8 +25,8 @@ public:
     /// Of an LED's cell at wo. Half a turn where the map gives none.
     [[nodiscard]] DirectionSpread uncertainty(std::size_t led, const Direction& wo) const;
 
-    /// What is left of the waves that an estimate found when the lens map's error, which shows lobes
-    /// apart as waves do, is taken off: that is in `uncertainty`.
+    /// What is left of the waves that an estimate found when the lens map's error, which shows
+    /// lobes apart as waves do, is taken off: that is in `uncertainty`.
     [[nodiscard]] TurnUncertainty wavesBeyondTheMap(const TiltEstimate& estimate) const;
 
 private:
