@@ -147,8 +147,11 @@ Result<void> writeReport(const fs::path& folder,
     const std::string csv = proc::sampleCsv(proc::residualMap(*fit, data));
     if (auto done = proc::writeFile(folder / "residuals.csv", csv); !done) return done;
     const proc::SampleLookup sizes(proc::residualSizeMap(*fit, data));
-    const std::string map = proc::hemisphereMaps(
-        sizes, {.title = "|f - " + fit->family->name() + "| / u", .incidences = data.incidences});
+    const std::string map =
+        proc::hemisphereMaps(sizes,
+                             {.title = "How far " + fit->family->name() + " is from the data",
+                              .incidences = data.incidences,
+                              .quantity = "|f - model| / u"});
     return proc::writeFile(folder / "residuals.svg", map);
 }
 

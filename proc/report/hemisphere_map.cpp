@@ -133,7 +133,6 @@ void drawScale(Svg& svg, Point corner, double height, const LogAxis& axis) {
         svg.line({corner.x + 14, y}, {corner.x + 18, y}, {});
         svg.text({corner.x + 21, y + 4}, "1e" + std::to_string(decade));
     }
-    svg.text({corner.x - 4, corner.y - 12}, "f, 1/sr");
 }
 
 void drawHeading(Svg& svg, const PlotRequest& request) {
@@ -169,6 +168,7 @@ std::string hemisphereMaps(const Scatterer& scatterer, const PlotRequest& reques
         svg.text({middle, kTop - 12}, bandLabel(scatterer, band), Anchor::Middle, 12);
     }
     drawScale(svg, {kLeft + width + 4, kTop}, height - (kPanel - kRaster), axis);
+    svg.text({kLeft + width, kTop - 12}, request.quantity);
     return svg.document();
 }
 

@@ -11,7 +11,8 @@ namespace gonio::proc {
 
 struct PlotRequest {
     std::string title;
-    std::vector<Radians> incidences;  ///< light at phi = 0
+    std::vector<Radians> incidences;   ///< light at phi = 0
+    std::string quantity = "f, 1/sr";  ///< what a hemisphere map shows, over its scale
 };
 
 /// The bands that differ: all three, or one of what is monochrome.
