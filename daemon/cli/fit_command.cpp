@@ -64,7 +64,7 @@ Result<proc::BrdfData> dataOf(const CommonOptions& common, const FitOptions& opt
     if (fs::path(options.file).extension() == ".csv") {
         const Result<proc::Points> points = proc::readPoints(options.file);
         if (!points) return points.error();
-        const auto data = proc::fitDataOf(*points, wanted);
+        auto data = proc::fitDataOf(*points, wanted);
         if (!data) return data.error().in(options.file);
         return data;
     }

@@ -122,6 +122,7 @@ private:
             }
         }
         std::vector<double> floor;
+        floor.reserve(sizes.size());
         for (std::vector<double>& all : sizes) {
             floor.push_back(all.empty() ? 0 : 0.01 * medianOf(std::move(all)));
         }

@@ -1,5 +1,6 @@
 #include "proc/fit/model_fit.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -35,6 +35,7 @@ Result<std::vector<std::size_t>> columnsOf(const std::vector<std::string>& names
 std::vector<double> picked(const std::vector<double>& row,
                            const std::vector<std::size_t>& columns) {
     std::vector<double> values;
+    values.reserve(columns.size());
     for (std::size_t column : columns) values.push_back(row[column]);
     return values;
 }
@@ -59,6 +60,7 @@ Result<std::vector<ColumnAccuracy>> accuracyOf(const ReferenceTable& table,
     const auto outputs = columnsOf(numbers.names, table.outputs);
     if (!outputs) return outputs.error();
     std::vector<ColumnAccuracy> columns;
+    columns.reserve(table.outputs.size());
     for (std::string_view output : table.outputs) {
         columns.push_back({.table = std::string(table.name),
                            .column = std::string(output),

@@ -61,7 +61,7 @@ struct WardAveraged {
 
     /// By the wider width: it covers both.
     [[nodiscard]] LobeMixture lobes() const {
-        const double widest = static_cast<double>(alpha.x < alpha.y ? alpha.y : alpha.x);
+        const auto widest = static_cast<double>(alpha.x < alpha.y ? alpha.y : alpha.x);
         return {{meanOf(ks), BeckmannLobe{Alpha<double>::isotropic(widest)}}};
     }
 };
