@@ -14,8 +14,10 @@ namespace gonio::proc {
 // One loop for the baseline, one for AVX2, one for AVX-512: the loader picks. All that a kernel
 // calls is inlined into each: one call left over would keep the loop scalar.
 template <Effort E, class Kernel, class T>
-[[gnu::flatten, gnu::target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")]] void
-evaluateAll(const Kernel& kernel, const PairArrays<T>& pairs, const BandArrays<T>& f) {
+#ifndef __clang__  // clang-tidy reads this too, and Clang takes one of the two at a time
+[[gnu::flatten, gnu::target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")]]
+#endif
+void evaluateAll(const Kernel& kernel, const PairArrays<T>& pairs, const BandArrays<T>& f) {
     // A copy, and no dependence between iterations: what is written could else be taken for the
     // kernel's parameters or for a later direction.
     const Kernel local = kernel;
@@ -31,7 +33,9 @@ evaluateAll(const Kernel& kernel, const PairArrays<T>& pairs, const BandArrays<T
     T* const g = f.g.data();
     T* const b = f.b.data();
     const std::size_t count = pairs.inX.size();
+#ifndef __clang__
 #pragma GCC ivdep
+#endif
     for (std::size_t i = 0; i < count; ++i) {
         const Pair<T> pair{{inX[i], inY[i], std::max(inZ[i], least)},
                            {outX[i], outY[i], std::max(outZ[i], least)}};
