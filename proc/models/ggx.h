@@ -49,8 +49,7 @@ struct Ggx {
 
     template <Effort E, class D>
     [[nodiscard]] Bands<P> f(const Pair<D>& pair) const {
-        const Half<D> half(pair);
-        return fresnel.at(half.cosDiff) * P(ggxD(half, alpha) * ggxV(pair, alpha, masking));
+        return withForms([&](const auto& ggx) { return ggx.template f<E>(pair); });
     }
 
     [[nodiscard]] LobeMixture lobes() const { return {{1, GgxLobe{alpha}}}; }

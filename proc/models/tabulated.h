@@ -4,7 +4,7 @@
 //   f = D(h) G1(wi) G1(wo) F(wi.h) / (4 mu_i mu_o), G1(w) = mu / int D(m) max(0, w.m) dm,
 // F by Schlick from f0. The table is D in any unit at angles theta_h from 0, rising, up to 90
 // degrees; between them ln D is linear in theta_h (linear where a value is 0), beyond the last D =
-// 0. It is scaled so that int D cos = 1: `scale` tells by what. Reciprocal; single scattering.
+// 0. It is scaled so that int D cos = 1. Reciprocal; single scattering.
 
 #include <filesystem>
 #include <memory>
@@ -32,7 +32,6 @@ public:
     [[nodiscard]] double d(double thetaH) const;
     /// 1/mu of a direction times G1: the inverse of the area projected towards it.
     [[nodiscard]] double maskedInverseMu(double mu) const;
-    [[nodiscard]] double scale() const { return scale_; }
 
 private:
     explicit NormalTable(std::vector<NormalTableRow> rows);

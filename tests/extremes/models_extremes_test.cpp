@@ -2,27 +2,18 @@
 // effort: one by one with floating-point traps on; in arrays by their values, as a loop over
 // vectors works out both sides of a choice and the lanes past its end.
 
-#include <cfenv>
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
 #include "proc/models/spec.h"
+#include "tests/support/floating_point_traps.h"
 #include "tests/support/model_specs.h"
 #include "tests/support/random_directions.h"
 
 namespace gonio::proc {
 namespace {
-
-class Traps {
-public:
-    Traps() { feenableexcept(FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW); }
-    ~Traps() { fedisableexcept(FE_ALL_EXCEPT); }
-    Traps(const Traps&) = delete;
-    Traps& operator=(const Traps&) = delete;
-};
 
 /// Poles, grazing to 1e-9 and below, denormal components, and directions hard by each other.
 std::vector<Direction> edges() {
@@ -57,7 +48,7 @@ TEST_P(ModelExtremes, AreFiniteAndNotNegative) {
         for (Precision precision : {Precision::Float, Precision::Double}) {
             const auto made = makeModel(GetParam(), {effort, precision});
             ASSERT_TRUE(made) << made.error().message;
-            const Traps on;
+            const test::FloatingPointTraps on;
             for (const Direction& wi : directions) {
                 for (const Direction& wo : directions) {
                     const LedBands f = (*made)->answer({wi, wo}).f;
@@ -111,7 +102,7 @@ TEST_P(ModelExtremes, OppositeAndEqualDirectionsAreDefined) {
     std::mt19937_64 random(8);
     const auto made = makeModel(GetParam());
     ASSERT_TRUE(made);
-    const Traps on;
+    const test::FloatingPointTraps on;
     for (int i = 0; i < 500; ++i) {
         const Direction w = test::randomDirection(random);
         const Direction opposite = *Direction::fromVector(-w.vector());
@@ -142,7 +133,7 @@ TEST(ModelExtremes, HaveFiniteDensitiesOfDraws) {
         const auto made = makeModel(spec);
         ASSERT_TRUE(made);
         const LobeMixture lobes = (*made)->lobes();
-        const Traps on;
+        const test::FloatingPointTraps on;
         for (const Direction& wi : edges()) {
             if (!wi.aboveHorizon()) continue;
             for (const double end : {0.0, 0.5, 1 - 1e-16}) {

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <cfenv>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -15,6 +14,7 @@
 #include "proc/quality/seen_direction.h"
 #include "proc/quality/tilt_correction.h"
 #include "tests/optics/lenses.h"
+#include "tests/support/floating_point_traps.h"
 #include "tests/support/sample_sets.h"
 
 namespace gonio::proc {
@@ -66,15 +66,6 @@ protected:
     }
 };
 
-/// Traps while it lives.
-class Traps {
-public:
-    Traps() { feenableexcept(FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW); }
-    ~Traps() { fedisableexcept(FE_ALL_EXCEPT); }
-    Traps(const Traps&) = delete;
-    Traps& operator=(const Traps&) = delete;
-};
-
 /// Each cell is a number with a finite uncertainty no smaller than before, or missing with a word.
 void expectSound(const SampleSet& before, const SampleSet& after) {
     ASSERT_EQ(after.leds.size(), before.leds.size());
@@ -105,7 +96,7 @@ TEST_P(TiltExtremes, NothingCrashesAndWhatIsSaidIsSound) {
     constexpr auto kParameters = static_cast<Eigen::Index>(LensMap::kParameters);
     const LensFit lens{.map = test::crookedLens(),
                        .covariance = 1e-6 * Eigen::MatrixXd::Identity(kParameters, kParameters)};
-    const Traps on;
+    const test::FloatingPointTraps on;
     const auto estimate = estimateTilt(seen, 0.01_deg);
     EXPECT_EQ(estimate && estimate->determined, GetParam().found);
     if (!estimate) return;  // no lobe: nothing is said, and nothing is done
