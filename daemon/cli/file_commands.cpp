@@ -148,8 +148,7 @@ Result<void> exportTo(const CommonOptions& common, const ExportOptions& options)
     if (!formats) return formats.error();
     const Result<Material> material = openMaterial(options.file, common.store);
     if (!material) return material.error();
-    std::error_code ignored;
-    fs::create_directories(options.output, ignored);
+    if (auto done = makeOutputFolder(options.output); !done) return done.error().in("export");
     const std::string stem = fileNameOf(titleOf(options.file, *material));
     Json files = Json::array();
     for (const ExportFormat format : *formats) {
@@ -176,8 +175,7 @@ Result<void> plot(const CommonOptions& common, const PlotOptions& options) {
     const std::string title = titleOf(options.file, *material);
     const std::string name = fileNameOf(title);
     const proc::PlotRequest request{.title = title, .incidences = material->incidences()};
-    std::error_code ignored;
-    if (!options.output.empty()) fs::create_directories(options.output, ignored);
+    if (auto done = makeOutputFolder(options.output); !done) return done.error().in("plot");
     const fs::path map = options.output / (name + ".map.svg");
     const fs::path slice = options.output / (name + ".slice.svg");
     if (auto done = proc::writeFile(map, proc::hemisphereMaps(*material->scatterer, request));

@@ -7,10 +7,12 @@
 #include <sstream>
 
 #include "daemon/cli/commands.h"
+#include "daemon/cli/evaluation_time.h"
 #include "daemon/cli/fit_report.h"
 #include "daemon/cli/goal_options.h"
 #include "daemon/cli/output.h"
 #include "daemon/material.h"
+#include "driver/steady_clock.h"
 #include "proc/core/number_text.h"
 #include "proc/fit/residual_map.h"
 #include "proc/fit/selection.h"
@@ -52,11 +54,25 @@ Result<void> readRobust(const std::string& text, proc::ModelFitOptions& options)
     return {};
 }
 
+/// Data that can be fitted, or why not, naming the file.
+Result<proc::BrdfData> checked(Result<proc::BrdfData> data, const std::string& file) {
+    if (!data) return data.error().in("'" + file + "'");
+    if (data->valueCount() > 0) return data;
+    return Error{ErrorKind::File,
+                 "fit: '" + file + "': no value can be fitted: directions left out, as missing, "
+                     "flagged, below the horizon or without a positive uncertainty: " +
+                     std::to_string(data->leftOut) + " of " + std::to_string(data->leftOut)};
+}
+
 Result<proc::BrdfData> dataOf(const CommonOptions& common, const FitOptions& options) {
     const std::optional<double> assumed = parsePercent(options.assumed);
-    if (!assumed) return usage("--assume '" + options.assumed + "', wanted such as 5%");
+    if (!assumed)
+        return usage("--assume '" + options.assumed +
+                     "', wanted a share above 0 % and up to 100 %, such as 5%");
     const std::optional<double> floor = options.floor.empty() ? 0 : parsePercent(options.floor);
-    if (!floor) return usage("--floor '" + options.floor + "', wanted such as 1%");
+    if (!floor)
+        return usage("--floor '" + options.floor +
+                     "', wanted a share above 0 % and up to 100 %, such as 1%");
     const proc::DataOptions wanted{.assumedRelative = *assumed, .relativeFloor = *floor};
     if (options.file.starts_with("model:")) {
         return usage("'" + options.file + "' is a formula already; a measured file is wanted");
@@ -64,14 +80,16 @@ Result<proc::BrdfData> dataOf(const CommonOptions& common, const FitOptions& opt
     if (fs::path(options.file).extension() == ".csv") {
         const Result<proc::Points> points = proc::readPoints(options.file);
         if (!points) return points.error();
-        auto data = proc::fitDataOf(*points, wanted);
-        if (!data) return data.error().in(options.file);
-        return data;
+        return checked(proc::fitDataOf(*points, wanted), options.file);
     }
     const Result<Material> material = openMaterial(options.file, common.store);
     if (!material) return material.error();
-    if (material->sample != nullptr) return proc::fitDataOf(*material->sample, wanted);
-    if (material->table != nullptr) return proc::fitDataOf(*material->table, wanted);
+    if (material->sample != nullptr) {
+        return checked(proc::fitDataOf(*material->sample, wanted), options.file);
+    }
+    if (material->table != nullptr) {
+        return checked(proc::fitDataOf(*material->table, wanted), options.file);
+    }
     return usage("'" + options.file + "' holds no measured values");
 }
 
@@ -92,9 +110,10 @@ std::vector<std::vector<std::string>> tableOf(const proc::Selection& selection) 
         const bool usable = fit.usable();
         std::string status(name(fit.status));
         if (usable) status = one.rejected ? "rejected" : "possible";
+        if (usable && !selection.chosen) status = "misfits";
         if (selection.chosen == i) status = "chosen";
         rows.push_back({fit.family->name(),
-                        std::to_string(fit.parameters.size()),
+                        std::to_string(fit.parameterCount()),
                         perCentOr(fit.heldOutRms()),
                         perCentOr(fit.heldOutEnergyRms()),
                         usable ? fixed(fit.chiSquarePerDof(), 3) : "",
@@ -138,8 +157,6 @@ Result<void> writeReport(const fs::path& folder,
                          const proc::Selection& selection,
                          const proc::BrdfData& data,
                          const Json& json) {
-    std::error_code ignored;
-    fs::create_directories(folder, ignored);
     if (auto done = proc::writeFile(folder / "fit.json", json.dump(2) + "\n"); !done) return done;
     if (auto done = proc::writeFile(folder / "fit.md", fitMarkdown(selection)); !done) return done;
     const proc::ModelFit* fit = shownFit(selection);
@@ -165,9 +182,13 @@ Result<void> fit(const CommonOptions& common, const FitOptions& options) {
     if (!weights) return weights.error();
     selectionOptions.fit.weights = *weights;
     if (auto done = readRobust(options.robust, selectionOptions.fit); !done) return done;
-    selectionOptions.nanoseconds = evaluationNanoseconds;
+    const driver::SteadyClock clock;
+    selectionOptions.nanoseconds = [&clock](const std::string& spec) {
+        return evaluationNanoseconds(spec, clock);
+    };
     const Result<proc::BrdfData> data = dataOf(common, options);
     if (!data) return data.error();
+    if (auto done = makeOutputFolder(options.output); !done) return done.error().in("fit");
     const proc::Selection selection = proc::selectModel(*families, *data, selectionOptions);
     const Json json = fitJson(selection, *data);
     if (!options.output.empty()) {
@@ -177,6 +198,8 @@ Result<void> fit(const CommonOptions& common, const FitOptions& options) {
         printJson(json);
         return {};
     }
+    std::cout << data->valueCount() << " values in " << data->rows.size() << " directions, "
+              << data->leftOut << " directions left out\n\n";
     printTable(tableOf(selection));
     if (const proc::ModelFit* shown = shownFit(selection)) printFit(*shown);
     std::cout << "\n" << selection.verdict << "\n";

@@ -1,14 +1,11 @@
 #include "daemon/cli/fit_report.h"
 
 #include <algorithm>
-#include <array>
-#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "proc/core/number_text.h"
 #include "proc/fit/residual_map.h"
-#include "proc/models/spec.h"
 
 namespace gonio::daemon {
 namespace {
@@ -100,31 +97,6 @@ Json modelJson(const proc::RankedFit& one, const proc::BrdfData& data) {
 
 std::string cell(std::optional<double> value) { return value ? perCent(*value) : ""; }
 
-/// Directions over the hemisphere, by a golden spiral.
-struct SpiralPairs {
-    static constexpr std::size_t kCount = 2048;
-    std::vector<double> inX, inY, inZ, outX, outY, outZ;
-
-    SpiralPairs() {
-        constexpr double kTurn = 2.399963229728653;
-        const double count = static_cast<double>(kCount);
-        for (std::size_t i = 0; i < kCount; ++i) {
-            const double k = static_cast<double>(i);
-            const auto at = [](double z, double phi) {
-                return Direction::fromSpherical(Radians(std::acos(z)), Radians(phi));
-            };
-            const Direction in = at(1 - (k + 0.5) / count, k * kTurn);
-            const Direction out = at((k + 0.5) / count, 1.7 * k * kTurn);
-            inX.push_back(in.x());
-            inY.push_back(in.y());
-            inZ.push_back(in.z());
-            outX.push_back(out.x());
-            outY.push_back(out.y());
-            outZ.push_back(out.z());
-        }
-    }
-};
-
 }  // namespace
 
 Json fitJson(const proc::Selection& selection, const proc::BrdfData& data) {
@@ -164,11 +136,11 @@ std::string fitMarkdown(const proc::Selection& selection) {
     for (const proc::RankedFit& one : selection.ranked) {
         const proc::ModelFit& fit = one.fit;
         if (!fit.usable()) {
-            text += "| " + fit.family->name() + " | " + std::to_string(fit.parameters.size()) +
+            text += "| " + fit.family->name() + " | " + std::to_string(fit.parameterCount()) +
                     " | | | | | | | | " + fit.message + " |\n";
             continue;
         }
-        text += "| " + fit.family->name() + " | " + std::to_string(fit.parameters.size()) + " | " +
+        text += "| " + fit.family->name() + " | " + std::to_string(fit.parameterCount()) + " | " +
                 cell(fit.heldOutRms()) + " | " + cell(fit.heldOutEnergyRms()) + " | " +
                 fixed(fit.chiSquarePerDof(), 3) + " | " + fixed(fit.aic(), 0) + " | " +
                 fixed(fit.bic(), 0) + " | " + (one.nanoseconds ? fixed(*one.nanoseconds, 1) : "") +
@@ -181,35 +153,11 @@ std::string fitMarkdown(const proc::Selection& selection) {
     }
     for (const proc::Misfit& one : selection.worst) {
         text += "| " + fixed(one.incidence.degrees(), 1) + " deg | " + one.region + " | " +
-                fixed(one.chiSquare, 2) + " | " + fixed(one.meanRatio, 3) + " | " +
-                std::to_string(one.values) + " |\n";
+                fixed(one.chiSquare, 2) + " | " +
+                (std::isfinite(one.meanRatio) ? fixed(one.meanRatio, 3) : "the model is 0") +
+                " | " + std::to_string(one.values) + " |\n";
     }
     return text;
-}
-
-std::optional<double> evaluationNanoseconds(const std::string& spec) {
-    const auto model = proc::makeModel(spec);
-    if (!model) return std::nullopt;
-    static const SpiralPairs pairs;
-    std::vector<double> r(SpiralPairs::kCount);
-    std::vector<double> g = r;
-    std::vector<double> b = r;
-    std::array<double, 5> times{};
-    for (double& time : times) {
-        const auto begin = std::chrono::steady_clock::now();
-        (*model)->evaluate(proc::PairArrays<double>{.inX = pairs.inX,
-                                                    .inY = pairs.inY,
-                                                    .inZ = pairs.inZ,
-                                                    .outX = pairs.outX,
-                                                    .outY = pairs.outY,
-                                                    .outZ = pairs.outZ},
-                           proc::BandArrays<double>{.r = r, .g = g, .b = b});
-        const std::chrono::duration<double, std::nano> spent =
-            std::chrono::steady_clock::now() - begin;
-        time = spent.count() / static_cast<double>(SpiralPairs::kCount);
-    }
-    std::sort(times.begin(), times.end());
-    return times[2];
 }
 
 }  // namespace gonio::daemon

@@ -26,4 +26,28 @@ void printTable(const std::vector<std::vector<std::string>>& rows) {
     }
 }
 
+std::string markdownTable(const std::vector<std::vector<std::string>>& rows) {
+    std::string text;
+    const auto add = [&](const std::vector<std::string>& cells) {
+        text += "|";
+        for (const std::string& cell : cells) text += " " + cell + " |";
+        text += "\n";
+    };
+    for (const auto& row : rows) {
+        add(row);
+        if (&row == &rows.front()) add(std::vector<std::string>(row.size(), "---"));
+    }
+    return text;
+}
+
+Result<void> makeOutputFolder(const std::filesystem::path& folder) {
+    if (folder.empty()) return {};
+    std::error_code failed;
+    std::filesystem::create_directories(folder, failed);
+    if (std::filesystem::is_directory(folder)) return {};
+    return Error{ErrorKind::File,
+                 folder.string() + ": wanted a folder to write to" +
+                     (failed ? ", " + failed.message() : "")};
+}
+
 }  // namespace gonio::daemon

@@ -1,9 +1,12 @@
 #pragma once
 // How the commands print on stdout: JSON for machines, tables for people.
 
+#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
+
+#include "proc/core/result.h"
 
 namespace gonio::daemon {
 
@@ -11,5 +14,11 @@ namespace gonio::daemon {
 void printJson(const nlohmann::ordered_json& json);
 /// Columns as wide as their widest word.
 void printTable(const std::vector<std::vector<std::string>>& rows);
+/// The first row is the head.
+[[nodiscard]] std::string markdownTable(const std::vector<std::vector<std::string>>& rows);
+
+/// Makes what -o names, before the work is done; an empty path is the working folder. A File error
+/// names it.
+[[nodiscard]] Result<void> makeOutputFolder(const std::filesystem::path& folder);
 
 }  // namespace gonio::daemon

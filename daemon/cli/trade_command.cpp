@@ -84,10 +84,11 @@ Result<std::vector<proc::TradeRow>> swept(const CommonOptions& common,
 }  // namespace
 
 Result<void> tradeAcquisition(const CommonOptions& common, const TradeOptions& options) {
+    if (auto done = makeOutputFolder(options.output); !done) {
+        return done.error().in("trade acquisition");
+    }
     const Result<std::vector<proc::TradeRow>> rows = swept(common, options);
     if (!rows) return rows.error();
-    std::error_code ignored;
-    if (!options.output.empty()) fs::create_directories(options.output, ignored);
     Json files = Json::array();
     const auto write = [&](const std::string& ending, const std::string& text) {
         const fs::path file = options.output / ("trade-acquisition" + ending);

@@ -61,20 +61,6 @@ Rows decadeRows(const proc::AccuracyReport& report) {
     return rows;
 }
 
-std::string markdown(const Rows& rows) {
-    std::string text;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        text += "|";
-        for (const std::string& cell : rows[i]) text += " " + cell + " |";
-        text += "\n";
-        if (i > 0) continue;
-        text += "|";
-        for (std::size_t k = 0; k < rows[i].size(); ++k) text += "---|";
-        text += "\n";
-    }
-    return text;
-}
-
 }  // namespace
 
 Result<void> tradeNumerics(const CommonOptions& common, const TradeNumericsOptions& options) {
@@ -82,7 +68,7 @@ Result<void> tradeNumerics(const CommonOptions& common, const TradeNumericsOptio
     if (!report) return report.error().in("trade numerics");
     if (!options.output.empty()) {
         const std::string text =
-            markdown(worstRows(*report)) + "\n" + markdown(decadeRows(*report));
+            markdownTable(worstRows(*report)) + "\n" + markdownTable(decadeRows(*report));
         if (auto done = proc::writeFile(options.output, text); !done) return done;
     }
     if (common.json) {

@@ -10,6 +10,7 @@
 #include "driver/steady_clock.h"
 #include "proc/core/number_text.h"
 #include "proc/formats/file_bytes.h"
+#include "proc/models/paper_figures.h"
 #include "proc/models/power_timing.h"
 
 namespace gonio::daemon {
@@ -190,17 +191,8 @@ std::vector<Section> sections(const PowerStudy& all) {
 
 std::string markdown(const std::vector<Section>& all) {
     std::string out;
-    const auto add = [&](const std::vector<std::string>& cells) {
-        out += "|";
-        for (const std::string& cell : cells) out += " " + cell + " |";
-        out += "\n";
-    };
     for (const Section& section : all) {
-        out += section.title + ".\n\n";
-        add(section.rows[0]);
-        add(std::vector<std::string>(section.rows[0].size(), "---"));
-        for (std::size_t i = 1; i < section.rows.size(); ++i) add(section.rows[i]);
-        out += "\n";
+        out += section.title + ".\n\n" + markdownTable(section.rows) + "\n";
     }
     return out;
 }
@@ -252,23 +244,10 @@ Json toJson(const PowerStudy& all, const Json& files) {
 }
 
 /// Before anything is measured: the folder, made where it is missing.
-Result<void> makeFolder(const fs::path& folder) {
-    std::error_code failed;
-    fs::create_directories(folder, failed);
-    if (!fs::is_directory(folder)) {
-        return Error{ErrorKind::File,
-                     "trade powers: " + folder.string() + ": wanted a folder for the tables" +
-                         (failed ? ", " + failed.message() : "")};
-    }
-    return {};
-}
-
 }  // namespace
 
 Result<void> tradePowers(const CommonOptions& common, const TradePowersOptions& options) {
-    if (!options.output.empty()) {
-        if (auto done = makeFolder(options.output); !done) return done;
-    }
+    if (auto done = makeOutputFolder(options.output); !done) return done.error().in("trade powers");
     const PowerStudy all = study(common, options);
     const std::vector<Section> tables = sections(all);
     Json files = Json::array();

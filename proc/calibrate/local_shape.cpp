@@ -82,14 +82,17 @@ double LocalShape::at(double f, double alongTheta, double alongPhi) const {
     return logarithmic ? f * std::exp(change) : f + change;
 }
 
+// Of f itself: (ln f)'' + (ln f)'^2 in units of f.
+double LocalShape::second(double f, const LocalCurve& along) const {
+    return logarithmic ? f * (along.curvature + along.slope * along.slope) : along.curvature;
+}
+
+double LocalShape::laplacian(double f) const { return second(f, theta) + second(f, phi); }
+
 // For independent normal x and y: <((a x^2 + b y^2) / 2)^2>.
 double LocalShape::secondOrder(double f, const DirectionSpread& u) const {
-    // Of f itself: (ln f)'' + (ln f)'^2 in units of f.
-    const auto second = [&](const LocalCurve& along) {
-        return logarithmic ? f * (along.curvature + along.slope * along.slope) : along.curvature;
-    };
-    const double a = second(theta) * u.alongTheta.value() * u.alongTheta.value();
-    const double b = second(phi) * u.alongPhi.value() * u.alongPhi.value();
+    const double a = second(f, theta) * u.alongTheta.value() * u.alongTheta.value();
+    const double b = second(f, phi) * u.alongPhi.value() * u.alongPhi.value();
     return std::sqrt((a + b) * (a + b) / 4 + (a * a + b * b) / 2);
 }
 

@@ -29,11 +29,16 @@ struct LocalShape {
     [[nodiscard]] double slope(double f) const;
     /// Of f by first order, for errors of the direction of size `u`.
     [[nodiscard]] double firstOrder(double f, const DirectionSpread& u) const;
+    /// Sum of the second derivatives of f along theta and phi, 1/sr per radian squared.
+    [[nodiscard]] double laplacian(double f) const;
     /// f at so many radians from the cell's centre.
     [[nodiscard]] double at(double f, double alongTheta, double alongPhi) const;
     /// Root mean square, over errors of the direction of size u, of what the second order adds to
     /// f.
     [[nodiscard]] double secondOrder(double f, const DirectionSpread& u) const;
+
+private:
+    [[nodiscard]] double second(double f, const LocalCurve& along) const;
 };
 
 /// Reads f, uRandom and flags of the cell, which is present, and its neighbours.

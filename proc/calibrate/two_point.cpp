@@ -28,6 +28,7 @@ enum Component : std::size_t {
     Geometry,
     LedDrift,
     Glare,  // from here on, Monte Carlo adds them as they are
+    Pixels,
     ComponentCount
 };
 using Contributions = std::array<double, ComponentCount>;
@@ -46,6 +47,7 @@ Budget components(const std::string& lower) {
         {"direction of the cell (lens map)", 'A', Correlation::PerState},
         {"LED drift", 'B', Correlation::PerState},
         {"glare", 'B', Correlation::PerState},
+        {"size of the pixels", 'B', Correlation::Common},
     };
 }
 
@@ -96,6 +98,8 @@ void addSizes(Budget& budget,
     budget[Geometry].unit = "degree";
     budget[Geometry].freedom = rig.angleFreedom;
     budget[LedDrift].size = rig.ledDrift;
+    budget[Pixels].size = Radians(std::sqrt(sample.pixelSolidAngle)).degrees();
+    budget[Pixels].unit = "degree";
 }
 
 /// What the tiles' certificates say at a cell, 1/sr.
@@ -217,6 +221,7 @@ Calibrated calibrate(const CellSignal& sample,
             Contributions& u = contributions[cell];
             CellInputs inputs = measurement.inputsOf(cell, out);
             u[Geometry] = inputs.shape.firstOrder(out.f[cell], inputs.uAngle);
+            u[Pixels] = std::abs(inputs.shape.laplacian(out.f[cell])) * sample.pixelSolidAngle / 12;
             out.uSystematic[cell] = quadrature(u, WhiteCommon, ComponentCount);
             const double total = std::hypot(out.uRandom[cell], out.uSystematic[cell]);
             if (monteCarlo.draws == 0 && !firstOrderFails(inputs, total)) continue;

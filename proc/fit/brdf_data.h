@@ -7,9 +7,9 @@
 // direction, where a lobe may bend within a cell, it is given as nodes of a Gauss rule (2 x 2, up
 // to 4 x 4 within 3 degrees) whose weights sum to 1, elsewhere by its centre. All else is one node.
 //
-// A measured sample's budget says which part of its systematic uncertainty is independent from cell
-// to cell (the white's per direction: it is added to u_random) and which is shared by one LED and
-// band alone (the LED's drift); the rest is common. Without a budget all of it is.
+// A measured sample's budget says which part of its systematic uncertainty is shared by one LED and
+// band alone, or by a patch of directions under it (budget_shares.h); the rest is common. Without a
+// budget all of it is.
 //
 // Left out: what is missing, saturated, blocked, at or below the horizon, and what has no positive
 // uncertainty in a file that gives uncertainties. A file that gives none gets an assumed one,
@@ -17,12 +17,15 @@
 // chi-square says how the misfit compares with what was assumed.
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <vector>
 
 #include "proc/core/result.h"
 #include "proc/core/scatterer.h"
+#include "proc/fit/budget_shares.h"
 #include "proc/formats/points_csv.h"
 #include "proc/models/kernel.h"
 #include "proc/table/sample_set.h"
@@ -40,12 +43,12 @@ struct FitRow {
     std::uint32_t firstNode = 0;
     std::uint16_t nodeCount = 1;
     std::uint16_t group = 0;  ///< index into BrdfData::incidences
+    std::uint32_t patch = 0;  ///< of directions: below kPatches
     std::int32_t cell = -1;   ///< of CellGrid; -1 where it is none
     double solidAngle = 1;    ///< relative to the other rows
     double cosThetaO = 1;
     std::array<double, 3> f{};
     std::array<double, 3> uRandom{};      ///< independent of all other rows
-    std::array<double, 3> uState{};       ///< relative to f, shared by the rows of a group and band
     std::array<double, 3> uSystematic{};  ///< shared by all rows of a band
 };
 
@@ -53,14 +56,29 @@ struct BrdfData {
     std::vector<WeightedNode> nodes;
     std::vector<FitRow> rows;
     std::vector<Radians> incidences;  ///< of the groups, ascending
+    BudgetShares shared;              ///< by group: errors shared by its values; empty: none
     BandCount bands = BandCount::Three;
     bool uKnown = true;
     double assumedRelative = 0;  ///< what was assumed where u is not known
     std::size_t leftOut = 0;     ///< pairs or cells
 
     [[nodiscard]] std::size_t bandsUsed() const { return bands == BandCount::One ? 1 : 3; }
+    [[nodiscard]] std::span<const WeightedNode> nodesOf(const FitRow& row) const {
+        return {nodes.data() + row.firstNode, row.nodeCount};
+    }
     /// Number of values of f.
     [[nodiscard]] std::size_t valueCount() const;
+    /// Whether any values share an error that is not common to all.
+    [[nodiscard]] bool sharesErrors() const;
+    /// What the values of the row's group, and of its patch, share.
+    [[nodiscard]] BudgetShare shareOf(const FitRow& row, std::size_t band) const {
+        return shared.empty() ? BudgetShare{} : shared[row.group][band];
+    }
+    /// Standard uncertainty of a value but for what is common to all: of its own and shared.
+    [[nodiscard]] double uOf(const FitRow& row, std::size_t band) const {
+        const BudgetShare share = shareOf(row, band);
+        return std::hypot(row.uRandom[band], row.f[band] * std::hypot(share.patch, share.state));
+    }
 };
 
 struct DataOptions {
@@ -72,13 +90,8 @@ struct DataOptions {
 /// The first plane of the first rotation; a Usage error for a table in XYZ or of transmission.
 [[nodiscard]] Result<BrdfData> fitDataOf(const SpecularTable& table,
                                          const DataOptions& options = {});
-/// Columns f or f_r,f_g,f_b, and where there u_random* or else u*, u_systematic*, flags.
+/// Columns f or f_r,f_g,f_b, and where there u_random* or else u*, u_systematic*, flags or flags_r,
+/// flags_g, flags_b.
 [[nodiscard]] Result<BrdfData> fitDataOf(const Points& points, const DataOptions& options = {});
-
-/// Rows of `groups`, at most about `count`, for fits that need not see all: the brightest quarter
-/// of them by count in each group, the rest evenly. Deterministic.
-[[nodiscard]] std::vector<std::uint32_t> thinnedRows(const BrdfData& data,
-                                                     const std::vector<bool>& groups,
-                                                     std::size_t count);
 
 }  // namespace gonio::proc

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "proc/optics/cell_grid.h"
+
 namespace gonio::proc {
 namespace {
 
@@ -28,9 +30,9 @@ BudgetShare shareOf(const Json& components) {
         const double relative = numberAt(one, "median_relative");
         const std::string correlation = textAt(one, "correlation");
         if (correlation == "per cell" && textAt(one, "type") == "B") {
-            share.perCell = std::hypot(share.perCell, relative);
+            share.patch = std::hypot(share.patch, relative);
         }
-        if (correlation == "per state") share.perState = std::hypot(share.perState, relative);
+        if (correlation == "per state") share.state = std::hypot(share.state, relative);
     }
     return share;
 }
@@ -54,6 +56,15 @@ BudgetShares budgetShares(const SampleSet& set) {
         }
     }
     return shares;
+}
+
+std::size_t patchOf(std::size_t cell) {
+    const CellPlace place = CellGrid::place(cell);
+    const int ring = place.row / kPatchDegrees;
+    const int middle = ring * kPatchDegrees + kPatchDegrees / 2;
+    const int patches = CellGrid::sectors(middle) / kPatchDegrees;
+    const int within = place.sector * patches / CellGrid::sectors(place.row);
+    return static_cast<std::size_t>(ring * (360 / kPatchDegrees) + within);
 }
 
 }  // namespace gonio::proc

@@ -3,13 +3,22 @@
 #include <algorithm>
 #include <cmath>
 
+#include "proc/core/units.h"
+
 namespace gonio::proc {
 namespace {
 
 constexpr double kSmall = 1e-300;
 
-/// x^a e^-x / Gamma(a), by its logarithm.
-double front(double a, double x) { return std::exp(a * std::log(x) - x - std::lgamma(a)); }
+/// x^a e^-x / Gamma(a). From a = 20 on by Stirling's series [Abramowitz1972, 6.1.37], x against a:
+/// the logarithms of a^a and Gamma(a) are large and nearly cancel.
+double front(double a, double x) {
+    if (a < 20) return std::exp(a * std::log(x) - x - std::lgamma(a));
+    const double off = (x - a) / a;
+    const double i = 1 / (a * a);
+    const double series = (1.0 / 12 - i * (1.0 / 360 - i * (1.0 / 1260 - i / 1680))) / a;
+    return std::sqrt(a / (2 * kPi)) * std::exp(a * (std::log1p(off) - off) - series);
+}
 
 /// P(a, x) by the series of [Abramowitz1972, 6.5.29], for x < a + 1.
 double lowerGamma(double a, double x) {
@@ -45,6 +54,7 @@ double upperGamma(double a, double x) {
 }  // namespace
 
 double chiSquareTail(double x, double dof) {
+    if (std::isnan(x)) return x;
     if (!(x > 0)) return 1;
     const double a = dof / 2;
     const double half = x / 2;

@@ -34,7 +34,8 @@ struct FamilyParameter {
     double upper = 1;
     ParameterScale scale = ParameterScale::Linear;
     bool perBand = false;
-    std::vector<double> starts{};  ///< of a shared one; of a per-band one the first is taken
+    bool likeTheOneBefore = false;  ///< exchanging the two changes nothing: the narrower is first
+    std::vector<double> starts{};   ///< of a shared one; of a per-band one the first is taken
 };
 
 /// A lobe as a spec writes it: NAME[,EXTRA],parameters.

@@ -100,6 +100,9 @@ inline constexpr double kLeastAlpha = 5e-3;
 [[nodiscard]] inline FamilyParameter f0(std::size_t lobe = 0) {
     return {.name = "f0", .lobe = lobe, .unit = "1", .perBand = true, .starts = {0.1}};
 }
+[[nodiscard]] inline FamilyParameter ks() {
+    return {.name = "ks", .lobe = 1, .unit = "1", .upper = 10, .perBand = true, .starts = {0.1}};
+}
 /// A width in [5e-3, 1].
 [[nodiscard]] inline FamilyParameter width(std::string_view name, std::size_t lobe = 0) {
     return {.name = name,
@@ -109,6 +112,11 @@ inline constexpr double kLeastAlpha = 5e-3;
             .upper = 1,
             .scale = ParameterScale::Log,
             .starts = {0.007, 0.015, 0.03, 0.06, 0.12, 0.22, 0.4, 0.7}};
+}
+[[nodiscard]] inline FamilyParameter secondWidth(std::string_view name, std::size_t lobe) {
+    FamilyParameter second = width(name, lobe);
+    second.likeTheOneBefore = true;
+    return second;
 }
 
 }  // namespace family_parameters

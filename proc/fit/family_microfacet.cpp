@@ -99,7 +99,7 @@ void addMicrofacetFamilies(FamilyList& list) {
         list,
         "lambert+ggx+ggx",
         {{"lambert"}, {"ggx"}, {"ggx"}},
-        {fp::width("alpha", 1), fp::width("alpha", 2), fp::albedo(), fp::f0(1), fp::f0(2)});
+        {fp::width("alpha", 1), fp::secondWidth("alpha", 2), fp::albedo(), fp::f0(1), fp::f0(2)});
 }
 
 }  // namespace gonio::proc

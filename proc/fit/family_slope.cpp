@@ -49,9 +49,27 @@ struct CookTorranceLobes {
     }
 };
 
-FamilyParameter ks() {
-    return {.name = "ks", .lobe = 1, .unit = "1", .upper = 10, .perBand = true, .starts = {0.1}};
-}
+/// One Fresnel reflectance for all bands and a strength for each, as fits of colour-blind lobes
+/// have.
+struct ScaledCookTorranceLobes {
+    static constexpr int kShared = 2;
+    static constexpr int kPerBand = 2;
+    template <class P>
+    static auto kernel(const P* shared, const Bands<P>* perBand) {
+        return BothKernels{Lambert<P>{perBand[0]},
+                           CookTorrance<P>{shared[0], Bands<P>::all(shared[1]), perBand[1]}};
+    }
+};
+
+struct LowLobes {
+    static constexpr int kShared = 2;
+    static constexpr int kPerBand = 2;
+    template <class P>
+    static auto kernel(const P* shared, const Bands<P>* perBand) {
+        return BothKernels{Lambert<P>{perBand[0]},
+                           Low<P>{shared[0], Bands<P>::all(shared[1]), perBand[1]}};
+    }
+};
 
 }  // namespace
 
@@ -61,19 +79,39 @@ void addSlopeFamilies(FamilyList& list) {
     list.push_back(std::make_unique<KernelFamily<WardLobes>>(
         "lambert+ward",
         Lobes{{"lambert"}, {"ward"}},
-        Parameters{fp::width("alpha", 1), fp::albedo(), ks()}));
+        Parameters{fp::width("alpha", 1), fp::albedo(), fp::ks()}));
     list.push_back(std::make_unique<KernelFamily<CookTorranceLobes>>(
         "lambert+cook-torrance",
         Lobes{{"lambert"}, {"cook-torrance"}},
         Parameters{fp::width("m", 1), fp::albedo(), fp::f0(1)}));
+    const FamilyParameter sharedF0{
+        .name = "f0", .lobe = 1, .unit = "1", .starts = {0.02, 0.1, 0.4}};
+    list.push_back(std::make_unique<KernelFamily<ScaledCookTorranceLobes>>(
+        "lambert+cook-torrance-scaled",
+        Lobes{{"lambert"}, {"cook-torrance"}},
+        Parameters{fp::width("m", 1), sharedF0, fp::albedo(), fp::ks()}));
+    FamilyParameter roughness = fp::width("roughness", 1);
+    roughness.upper = 3;
+    const FamilyParameter eta{.name = "eta",
+                              .lobe = 1,
+                              .unit = "1",
+                              .lower = 1,
+                              .upper = 20,
+                              .scale = ParameterScale::Log,
+                              .starts = {1.1, 1.6, 4, 10}};
+    list.push_back(std::make_unique<KernelFamily<LowLobes>>(
+        "lambert+low",
+        Lobes{{"lambert"}, {"low"}},
+        Parameters{roughness, eta, fp::albedo(), fp::ks()}));
     list.push_back(std::make_unique<KernelFamily<AveragedWardLobes>>(
         "lambert+ward-averaged",
         Lobes{{"lambert"}, {"ward", "azimuth=averaged"}},
-        Parameters{fp::width("alpha_x", 1), fp::width("alpha_y", 1), fp::albedo(), ks()}));
+        Parameters{
+            fp::width("alpha_x", 1), fp::secondWidth("alpha_y", 1), fp::albedo(), fp::ks()}));
     list.push_back(std::make_unique<KernelFamily<AnisotropicWardLobes>>(
         "lambert+ward-anisotropic",
         Lobes{{"lambert"}, {"ward"}},
-        Parameters{fp::width("alpha_x", 1), fp::width("alpha_y", 1), fp::albedo(), ks()}));
+        Parameters{fp::width("alpha_x", 1), fp::width("alpha_y", 1), fp::albedo(), fp::ks()}));
 }
 
 }  // namespace gonio::proc

@@ -11,25 +11,18 @@ using Index = Eigen::Index;
 
 constexpr Index at(std::size_t i) { return static_cast<Index>(i); }
 
-/// Sums over the values of one band, by its shared and its own parameters.
-struct BandSums {
-    double cost = 0;
-    std::array<double, kMostLocal> gradient{};
-    std::array<std::array<double, kMostLocal>, kMostLocal> matrix{};
-
-    void add(const std::array<double, kMostLocal>& j,
-             double residual,
-             double weight,
-             std::size_t n) {
-        for (std::size_t i = 0; i < n; ++i) {
-            const double wj = weight * j[i];
-            gradient[i] += wj * residual;
-            for (std::size_t k = i; k < n; ++k) matrix[i][k] += wj * j[k];
-        }
-    }
-};
-
 }  // namespace
+
+void BandSums::add(const std::array<double, kMostLocal>& j,
+                   double residual,
+                   double weight,
+                   std::size_t n) {
+    for (std::size_t i = 0; i < n; ++i) {
+        const double wj = weight * j[i];
+        gradient[i] += wj * residual;
+        for (std::size_t k = i; k < n; ++k) matrix[i][k] += wj * j[k];
+    }
+}
 
 FitSums::FitSums(const Family& family, const BrdfData& data, const ModelFitOptions& options)
     : family_(&family),
@@ -47,7 +40,8 @@ FitSums::FitSums(const Family& family, const BrdfData& data, const ModelFitOptio
             sum += row.f[b] * row.f[b];
             count += 1;
         }
-        if (sum > 0) size_[b] = std::sqrt(sum / count);
+        // A band of zeros was measured, too.
+        if (count > 0) size_[b] = sum > 0 ? std::sqrt(sum / count) : 1;
     }
 }
 
@@ -69,7 +63,8 @@ std::vector<double> FitSums::upper() const {
     std::vector<double> q;
     for (std::size_t i = 0; i < count_; ++i) {
         const FamilyParameter& p = parameter(i);
-        q.push_back(p.scale == ParameterScale::Log ? std::log(p.upper) : p.upper);
+        const double most = isHeld(i) ? p.lower : p.upper;
+        q.push_back(p.scale == ParameterScale::Log ? std::log(most) : most);
     }
     return q;
 }
@@ -98,22 +93,27 @@ FamilyPoint FitSums::point(std::span<const double> q) const {
     return point;
 }
 
-FitSums::Weight FitSums::robust(double s) const {
+FitSums::Loss FitSums::robust(double s) const {
     const double scale2 = options_.lossScale * options_.lossScale;
     switch (options_.loss) {
         case RobustLoss::None: break;
         case RobustLoss::Huber:
             if (s <= scale2) break;
             return {2 * options_.lossScale * std::sqrt(s) - scale2,
-                    options_.lossScale / std::sqrt(s)};
-        case RobustLoss::Cauchy: return {scale2 * std::log1p(s / scale2), 1 / (1 + s / scale2)};
+                    options_.lossScale / std::sqrt(s),
+                    0};
+        case RobustLoss::Cauchy: {
+            const double x = s / scale2;
+            return {scale2 * std::log1p(x), 1 / (1 + x), (1 - x) / ((1 + x) * (1 + x))};
+        }
     }
-    return {s, 1};
+    return {s, 1, 1};
 }
 
-double FitSums::scaleOf(const FitRow& row, std::size_t band) const {
-    const double u = options_.weights.uncertainty ? row.uRandom[band] : size_[band];
-    return options_.weights.cosine ? u / std::sqrt(row.cosThetaO) : u;
+double FitSums::weightOf(const FitRow& row, std::size_t band) const {
+    const double relative = row.uRandom[band] / size_[band];
+    return (options_.weights.uncertainty ? 1 : relative * relative) *
+           (options_.weights.cosine ? row.cosThetaO : 1);
 }
 
 template <class Visit>
@@ -122,11 +122,9 @@ void FitSums::eachValue(const FamilyPoint& point,
                         Visit&& visit) const {
     for (const std::uint32_t i : rows) {
         const FitRow& row = data_->rows[i];
-        const std::span nodes(data_->nodes.data() + row.firstNode, row.nodeCount);
-        const std::array<BandSlopes, 3> slopes = family_->slopes(point, nodes);
+        const std::array<BandSlopes, 3> slopes = family_->slopes(point, data_->nodesOf(row));
         for (std::size_t b = 0; b < bands_; ++b) {
-            if (!std::isfinite(row.f[b])) continue;
-            visit(row, b, slopes[b], scaleOf(row, b));
+            if (std::isfinite(row.f[b])) visit(i, b, slopes[b]);
         }
     }
 }
@@ -141,153 +139,133 @@ std::size_t FitSums::residualCount(std::span<const std::uint32_t> rows) const {
     return count;
 }
 
+double FitSums::cost(const FamilyPoint& point,
+                     std::span<const std::uint32_t> rows,
+                     bool asWeighted) const {
+    double cost = 0;
+    SharedSums along = sharedErrors(!asWeighted || byCovariance());
+    for (const std::uint32_t i : rows) {
+        const FitRow& row = data_->rows[i];
+        const LedBands f = family_->f(point, data_->nodesOf(row));
+        for (std::size_t b = 0; b < bands_; ++b) {
+            if (!std::isfinite(row.f[b])) continue;
+            const double r = (f.value[b] - row.f[b]) / row.uRandom[b];
+            cost += asWeighted ? weightOf(row, b) * robust(r * r).value : r * r;
+            along.add(row, b, r, sharedAbout(i, b) / row.uRandom[b]);
+        }
+    }
+    return cost - along.taken();
+}
+
+/// By the parameters of all bands, as q.
+void FitSums::addToAll(std::span<const double> q,
+                       std::size_t band,
+                       const BandSums& of,
+                       NormalSums& total) const {
+    const std::size_t local = shared_ + perBand_;
+    std::array<Index, kMostLocal> global{};
+    std::array<double, kMostLocal> chain{};
+    for (std::size_t i = 0; i < local; ++i) {
+        const std::size_t where = i < shared_ ? i : place(i - shared_, band);
+        global[i] = at(where);
+        chain[i] = slope(where, q[where]);
+    }
+    total.cost += of.cost;
+    for (std::size_t i = 0; i < local; ++i) {
+        total.gradient(global[i]) += chain[i] * of.gradient[i];
+        for (std::size_t k = i; k < local; ++k) {
+            const double value = chain[i] * chain[k] * of.matrix[i][k];
+            total.matrix(global[i], global[k]) += value;
+            if (k != i) total.matrix(global[k], global[i]) += value;
+        }
+    }
+}
+
 std::optional<NormalSums> FitSums::sums(std::span<const double> q,
                                         std::span<const std::uint32_t> rows,
                                         Wanted wanted) const {
     const FamilyPoint p = point(q);
     NormalSums total = NormalSums::zero(count_);
-    std::vector<std::array<Shared, 3>> shared(data_->incidences.size());
     if (wanted == Wanted::Cost) {
-        for (const std::uint32_t i : rows) {
-            const FitRow& row = data_->rows[i];
-            const LedBands f =
-                family_->f(p, std::span(data_->nodes.data() + row.firstNode, row.nodeCount));
-            for (std::size_t b = 0; b < bands_; ++b) {
-                if (!std::isfinite(row.f[b])) continue;
-                const double scale = scaleOf(row, b);
-                const double r = (f.value[b] - row.f[b]) / scale;
-                const Weight weight = robust(r * r);
-                total.cost += weight.loss;
-                const double s = byCovariance() ? stateOf(row, b) / scale : 0;
-                shared[row.group][b].rs += weight.factor * r * s;
-                shared[row.group][b].ss += weight.factor * s * s;
-            }
-        }
-        for (const auto& group : shared) {
-            for (const Shared& one : group) total.cost -= one.rs * one.rs / (1 + one.ss);
-        }
+        total.cost = cost(p, rows, true);
         return std::isfinite(total.cost) ? std::optional(total) : std::nullopt;
     }
     const std::size_t local = shared_ + perBand_;
     std::array<BandSums, 3> bands;
-    eachValue(p, rows, [&](const FitRow& row, std::size_t b, const BandSlopes& f, double scale) {
-        const double r = (f.value - row.f[b]) / scale;
-        const Weight weight = robust(r * r);
-        bands[b].cost += weight.loss;
-        std::array<double, kMostLocal> j;
-        for (std::size_t i = 0; i < local; ++i) j[i] = f.slope[i] / scale;
-        bands[b].add(j, r, weight.factor, local);
-        const double s = byCovariance() ? stateOf(row, b) / scale : 0;
-        if (s == 0) return;
-        Shared& one = shared[row.group][b];
-        one.rs += weight.factor * r * s;
-        one.ss += weight.factor * s * s;
-        for (std::size_t i = 0; i < local; ++i) one.js[i] += weight.factor * j[i] * s;
+    SharedSums along = sharedErrors(byCovariance());
+    eachValue(p, rows, [&](std::uint32_t i, std::size_t b, const BandSlopes& f) {
+        const FitRow& row = data_->rows[i];
+        const double u = row.uRandom[b];
+        const double r = (f.value - row.f[b]) / u;
+        const double w = weightOf(row, b);
+        const Loss loss = robust(r * r);
+        bands[b].cost += w * loss.value;
+        std::array<double, kMostLocal> j{};
+        for (std::size_t k = 0; k < local; ++k) j[k] = f.slope[k] / u;
+        bands[b].add(j, r, w * loss.slope, local);
+        along.add(row, b, r, sharedAbout(i, b) / u, j, local);
     });
-    for (const auto& group : shared) {
-        for (std::size_t b = 0; b < bands_; ++b) {
-            const Shared& one = group[b];
-            bands[b].cost -= one.rs * one.rs / (1 + one.ss);
-            bands[b].add(one.js, one.rs, -1 / (1 + one.ss), local);
-        }
-    }
-    for (std::size_t b = 0; b < bands_; ++b) {
-        const auto global = [&](std::size_t i) {
-            return at(i < shared_ ? i : place(i - shared_, b));
-        };
-        std::array<double, kMostLocal> chain;
-        for (std::size_t i = 0; i < local; ++i) {
-            const auto where = static_cast<std::size_t>(global(i));
-            chain[i] = slope(where, q[where]);
-        }
-        total.cost += bands[b].cost;
-        for (std::size_t i = 0; i < local; ++i) {
-            total.gradient(global(i)) += chain[i] * bands[b].gradient[i];
-            for (std::size_t k = i; k < local; ++k) {
-                const double value = chain[i] * chain[k] * bands[b].matrix[i][k];
-                total.matrix(global(i), global(k)) += value;
-                if (k != i) total.matrix(global(k), global(i)) += value;
-            }
-        }
-    }
+    along.eachTaken([&](std::size_t b, double factor, const AlongModel& one) {
+        bands[b].cost -= factor * one.r * one.r;
+        bands[b].add(one.j, one.r, -factor, local);
+    });
+    for (std::size_t b = 0; b < bands_; ++b) addToAll(q, b, bands[b], total);
     return total.finite() ? std::optional(total) : std::nullopt;
 }
 
 void FitSums::shareErrors(const FamilyPoint& point) {
-    state_.clear();
-    std::vector<std::array<double, 3>> all(data_->rows.size());
-    bool any = false;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        const FitRow& row = data_->rows[i];
-        const LedBands f =
-            family_->f(point, std::span(data_->nodes.data() + row.firstNode, row.nodeCount));
-        for (std::size_t b = 0; b < bands_; ++b) {
-            all[i][b] = row.uState[b] * f.value[b];
-            any = any || all[i][b] != 0;
-        }
-    }
-    if (any) state_ = std::move(all);
+    model_.clear();
+    for (const FitRow& row : data_->rows) model_.push_back(family_->f(point, data_->nodesOf(row)));
 }
 
 double FitSums::chiSquare(const FamilyPoint& point, std::span<const std::uint32_t> rows) const {
-    std::vector<std::array<Shared, 3>> shared(data_->incidences.size());
-    double sum = 0;
-    for (const std::uint32_t i : rows) {
-        const FitRow& row = data_->rows[i];
-        const LedBands f =
-            family_->f(point, std::span(data_->nodes.data() + row.firstNode, row.nodeCount));
-        for (std::size_t b = 0; b < bands_; ++b) {
-            if (!std::isfinite(row.f[b])) continue;
-            const double r = (f.value[b] - row.f[b]) / row.uRandom[b];
-            const double s = stateOf(row, b) / row.uRandom[b];
-            sum += r * r;
-            shared[row.group][b].rs += r * s;
-            shared[row.group][b].ss += s * s;
-        }
-    }
-    for (const auto& group : shared) {
-        for (const Shared& one : group) sum -= one.rs * one.rs / (1 + one.ss);
-    }
-    return sum;
+    return cost(point, rows, false);
 }
 
 FitSums::Spread FitSums::spread(std::span<const double> q,
                                 std::span<const std::uint32_t> rows) const {
-    Spread all{.squared = Eigen::MatrixXd::Zero(at(count_), at(count_)),
-               .plain = Eigen::MatrixXd::Zero(at(count_), at(count_)),
-               .systematic = Eigen::MatrixXd::Zero(at(count_), at(bands_))};
+    const Index n = at(count_);
+    Spread all{.curvature = Eigen::MatrixXd::Zero(n, n),
+               .noise = Eigen::MatrixXd::Zero(n, n),
+               .systematic = Eigen::MatrixXd::Zero(n, at(bands_))};
     const std::size_t local = shared_ + perBand_;
-    Eigen::VectorXd j(at(local));
-    std::vector<Eigen::Index> global(local);
-    std::vector<std::array<Eigen::VectorXd, 3>> shared(data_->incidences.size());
-    for (auto& group : shared) group.fill(Eigen::VectorXd::Zero(at(count_)));
-    eachValue(
-        point(q), rows, [&](const FitRow& row, std::size_t b, const BandSlopes& f, double scale) {
-            const double r = (f.value - row.f[b]) / scale;
-            const double weight = robust(r * r).factor;
-            for (std::size_t i = 0; i < local; ++i) {
-                const std::size_t where = i < shared_ ? i : place(i - shared_, b);
-                global[i] = at(where);
-                j(at(i)) = weight * slope(where, q[where]) * f.slope[i] / scale;
+    const auto global = [&](std::size_t i, std::size_t b) {
+        return i < shared_ ? i : place(i - shared_, b);
+    };
+    const auto addTo = [&](Eigen::MatrixXd& matrix,
+                           std::size_t b,
+                           double factor,
+                           const std::array<double, kMostLocal>& j) {
+        for (std::size_t i = 0; i < local; ++i) {
+            for (std::size_t k = 0; k < local; ++k) {
+                matrix(at(global(i, b)), at(global(k, b))) += factor * j[i] * j[k];
             }
-            const double noise = row.uRandom[b] / scale;
-            const double shift = row.uSystematic[b] / scale;
-            const double state = stateOf(row, b) / scale;
-            for (std::size_t i = 0; i < local; ++i) {
-                all.systematic(global[i], at(b)) += j(at(i)) * shift;
-                shared[row.group][b](global[i]) += j(at(i)) * state;
-                for (std::size_t k = 0; k < local; ++k) {
-                    all.plain(global[i], global[k]) += j(at(i)) * j(at(k));
-                    all.squared(global[i], global[k]) += j(at(i)) * j(at(k)) * noise * noise;
-                }
-            }
-        });
-    for (std::size_t g = 0; g < shared.size(); ++g) {
-        for (std::size_t b = 0; b < bands_; ++b) {
-            const Eigen::VectorXd& js = shared[g][b];
-            all.squared += js * js.transpose();
         }
-    }
+    };
+    SharedSums along = sharedErrors(true);
+    eachValue(point(q), rows, [&](std::uint32_t i, std::size_t b, const BandSlopes& f) {
+        const FitRow& row = data_->rows[i];
+        const double u = row.uRandom[b];
+        const double r = (f.value - row.f[b]) / u;
+        const double w = weightOf(row, b);
+        const Loss loss = robust(r * r);
+        std::array<double, kMostLocal> j{};
+        std::array<double, kMostLocal> moved{};
+        for (std::size_t k = 0; k < local; ++k) {
+            const std::size_t where = global(k, b);
+            j[k] = slope(where, q[where]) * f.slope[k] / u;
+            moved[k] = w * loss.bend * j[k];
+            all.systematic(at(where), at(b)) += moved[k] * row.uSystematic[b] / u;
+        }
+        // A robust loss is for residuals that are not what u says: then by what they are.
+        const double size2 = options_.loss == RobustLoss::None ? 1 : r * r;
+        addTo(all.curvature, b, w * loss.bend, j);
+        addTo(all.noise, b, w * loss.slope * w * loss.slope * size2, j);
+        along.add(row, b, r, sharedAbout(i, b) / u, moved, local);
+    });
+    along.eachAdded([&](std::size_t b, double factor, const AlongModel& one) {
+        addTo(all.noise, b, factor, one.j);
+    });
     return all;
 }
 

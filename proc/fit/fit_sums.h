@@ -1,25 +1,35 @@
 #pragma once
-// What a fit of a family to rows of data minimises, as sums (proc/solve/normal_fit.h). Parameters
-// are fitted as numbers q: the value itself, or its logarithm; shared ones first, then each
-// per-band one for the bands in turn.
+// What a fit of a family to rows of data minimises, as sums (proc/solve/normal_fit.h):
+//   sum w rho(r^2), r = (f - model) / u,
+// w the cosine, or u^2 over the band's mean square, or 1. Parameters are fitted as numbers q: the
+// value itself, or its logarithm; shared ones first, then each per-band one for the bands in turn.
+// A parameter of a band that was not measured is held at its lower bound.
 //
-// The values of one incidence and band share an error of standard uncertainty uState times f. Its
-// part in the covariance of the data is s s^T, s = uState m0 / u, m0 the model of a fit without it:
-// with the measured f in its place, whose noise it would share, a fit comes out too small. By the
-// rank-one inverse
-//   r^T (1 + s s^T)^-1 r = r.r - (r.s)^2 / (1 + s.s),
-// likewise for J^T r and J^T J: nothing more is fitted, and no offset of an LED counts as misfit
-// beyond its uncertainty. Fits that are not weighted by uncertainty leave this out of the sums and
-// have it in their covariance.
+// Errors that values share are in the covariance of the data (shared_sums.h) once shareErrors() was
+// told a model. Fits with other weights or a robust loss leave them out of the sums and have them
+// in their covariance.
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "proc/fit/model_fit.h"
+#include "proc/fit/shared_sums.h"
 #include "proc/solve/normal_fit.h"
 
 namespace gonio::proc {
+
+/// Sums over the values of one band, by the shared parameters and then the band's own.
+struct BandSums {
+    double cost = 0;
+    std::array<double, kMostLocal> gradient{};
+    std::array<std::array<double, kMostLocal>, kMostLocal> matrix{};
+
+    void add(const std::array<double, kMostLocal>& j,
+             double residual,
+             double weight,
+             std::size_t n);
+};
 
 class FitSums {
 public:
@@ -45,19 +55,31 @@ public:
     /// Whether the sums are those of the data's own covariance, so that (J^T W J)^-1 is that of the
     /// parameters.
     [[nodiscard]] bool byCovariance() const {
-        return options_.weights.uncertainty && !options_.weights.cosine;
+        return options_.weights.uncertainty && !options_.weights.cosine &&
+               options_.loss == RobustLoss::None;
     }
-    /// From now on with the errors that incidences and bands share, about this model; on rows of
-    /// all data.
+    /// What a covariance is multiplied with where u was assumed: the squares of residuals say then
+    /// what it is, unless they are in the covariance already.
+    [[nodiscard]] double assumedScale(double chiSquarePerDof) const {
+        return data_->uKnown || options_.loss != RobustLoss::None ? 1 : chiSquarePerDof;
+    }
+    /// Of a band that was not measured.
+    [[nodiscard]] bool isHeld(std::size_t place) const {
+        return place >= shared_ && !measured((place - shared_) % bands_);
+    }
+    /// Whether the band has any value.
+    [[nodiscard]] bool measured(std::size_t band) const { return size_[band] > 0; }
+    /// From now on with the errors that values share, about this model; on rows of all data.
     void shareErrors(const FamilyPoint& point);
     /// r^T C^-1 r of f against its uncertainties, whatever the weights.
     [[nodiscard]] double chiSquare(const FamilyPoint& point,
                                    std::span<const std::uint32_t> rows) const;
-    /// sum W^2 j j^T, and per band sum W j u_systematic / u: for covariances at the solution.
+    /// For covariances at the solution, by q: a change d of the residuals moves the parameters by
+    /// curvature^-1 sum w rho2 j d, rho2 = rho' + 2 r^2 rho''.
     struct Spread {
-        Eigen::MatrixXd squared;
-        Eigen::MatrixXd plain;       ///< J^T W^2 J, without shared errors
-        Eigen::MatrixXd systematic;  ///< one column per band
+        Eigen::MatrixXd curvature;   ///< sum w rho2 j j^T
+        Eigen::MatrixXd noise;       ///< covariance of sum w rho' j r: own and shared errors
+        Eigen::MatrixXd systematic;  ///< sum w rho2 j u_systematic / u, one column per band
     };
     [[nodiscard]] Spread spread(std::span<const double> q,
                                 std::span<const std::uint32_t> rows) const;
@@ -68,24 +90,31 @@ public:
     double solvePerBand(std::vector<double>& q, std::span<const std::uint32_t> rows) const;
 
 private:
-    struct Weight {
-        double loss;    ///< rho(s)
-        double factor;  ///< rho'(s)
+    struct Loss {
+        double value;  ///< rho(s)
+        double slope;  ///< rho'(s)
+        double bend;   ///< rho'(s) + 2 s rho''(s)
     };
-    [[nodiscard]] Weight robust(double s) const;
-    [[nodiscard]] double stateOf(const FitRow& row, std::size_t band) const {
-        if (state_.empty()) return 0;
-        return state_[static_cast<std::size_t>(&row - data_->rows.data())][band];
+    [[nodiscard]] Loss robust(double s) const;
+    /// w of a row and band.
+    [[nodiscard]] double weightOf(const FitRow& row, std::size_t band) const;
+    /// m0, the model about which errors are shared; 0 before shareErrors().
+    [[nodiscard]] double sharedAbout(std::uint32_t row, std::size_t band) const {
+        return model_.empty() ? 0 : model_[row].value[band];
     }
-    /// What the values of an incidence and a band have in common.
-    struct Shared {
-        double rs = 0;  ///< r.s
-        double ss = 0;  ///< s.s
-        std::array<double, kMostLocal> js{};
-    };
-    /// What the residual of a row and band is divided by, the root of its weight included.
-    [[nodiscard]] double scaleOf(const FitRow& row, std::size_t band) const;
-    /// Calls visit(row, band, slopes, residual, scale) for each value of the rows.
+    /// Nothing is in it before shareErrors(), nor where `wanted` is false.
+    [[nodiscard]] SharedSums sharedErrors(bool wanted) const {
+        return {*data_, !model_.empty() && wanted};
+    }
+    /// sum w rho(r^2); `asWeighted` false: sum r^2 whatever the weights and the loss.
+    [[nodiscard]] double cost(const FamilyPoint& point,
+                              std::span<const std::uint32_t> rows,
+                              bool asWeighted) const;
+    void addToAll(std::span<const double> q,
+                  std::size_t band,
+                  const BandSums& of,
+                  NormalSums& total) const;
+    /// Calls visit(index, band, slopes) for each value of the rows.
     template <class Visit>
     void eachValue(const FamilyPoint& point,
                    std::span<const std::uint32_t> rows,
@@ -98,8 +127,8 @@ private:
     std::size_t perBand_;
     std::size_t bands_;
     std::size_t count_;
-    std::vector<std::array<double, 3>> state_;  ///< uState m0 by row; empty: left out
-    std::array<double, 3> size_{1, 1, 1};       ///< rms of f, for fits without uncertainties
+    std::vector<LedBands> model_;   ///< m0 by row; empty: nothing is shared
+    std::array<double, 3> size_{};  ///< rms of f, for fits without uncertainties; 0: no value
 };
 
 }  // namespace gonio::proc

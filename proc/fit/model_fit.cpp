@@ -8,6 +8,7 @@
 
 #include "proc/core/number_text.h"
 #include "proc/fit/fit_sums.h"
+#include "proc/fit/thinned_rows.h"
 
 namespace gonio::proc {
 namespace {
@@ -34,19 +35,20 @@ constexpr Search kRefining{.iterations = 30, .tolerance = 1e-6};
 /// Every point of the grid of shared parameters, with the per-band ones that suit it.
 std::vector<Start> gridOfStarts(const Family& family, const FitSums& sums, const Rows& rows) {
     std::vector<double> first(sums.count());
-    for (std::size_t i = 0; i < sums.count(); ++i) first[i] = sums.parameter(i).starts.front();
+    for (std::size_t i = 0; i < sums.count(); ++i) {
+        const FamilyParameter& p = sums.parameter(i);
+        first[i] = sums.isHeld(i) ? p.lower : p.starts.front();
+    }
     std::vector<std::vector<double>> grid{first};
     for (std::size_t i = 0; i < family.sharedCount(); ++i) {
         const FamilyParameter& p = sums.parameter(i);
         std::vector<std::vector<double>> wider;
         for (const std::vector<double>& at : grid) {
             for (const double value : p.starts) {
-                // Two lobes of one kind, and the two widths of one: the narrower comes first.
-                const bool twin = i > 0 && sums.parameter(i - 1).scale == p.scale &&
-                                  p.scale == ParameterScale::Log;
-                if (twin && value < std::exp(at[i - 1])) continue;
+                const double q = p.scale == ParameterScale::Log ? std::log(value) : value;
+                if (p.likeTheOneBefore && q < at[i - 1]) continue;
                 wider.push_back(at);
-                wider.back()[i] = p.scale == ParameterScale::Log ? std::log(value) : value;
+                wider.back()[i] = q;
             }
         }
         grid = std::move(wider);
@@ -82,12 +84,6 @@ Rows allRows(const BrdfData& data) {
     return rows;
 }
 
-/// Rows that a start is judged by: a fit to few rows of a family with many parameters would not
-/// tell one from another.
-Rows startRows(const BrdfData& data, const ModelFitOptions& options) {
-    return thinnedRows(data, std::vector<bool>(data.incidences.size(), true), options.startRows);
-}
-
 std::vector<FittedParameter> namedParameters(const Family& family,
                                              const FitSums& sums,
                                              const BrdfData& data) {
@@ -100,6 +96,7 @@ std::vector<FittedParameter> namedParameters(const Family& family,
         if (p.perBand && data.bands == BandCount::Three) {
             named.band = kBands[(i - family.sharedCount()) % 3];
         }
+        named.measured = !sums.isHeld(i);
         named.value = named.uRandom = named.uSystematic = kNan;
         all.push_back(std::move(named));
     }
@@ -110,12 +107,10 @@ std::string shownName(const FittedParameter& p) {
     return p.band ? p.name + "_" + std::string(letter(*p.band)) : p.name;
 }
 
-/// (J^T W J)^-1 J^T W^2 J (J^T W J)^-1 of the free parameters, and the shift that the systematic
-/// uncertainties cause, as parameter values.
+/// Of the free parameters, as values: see model_fit.h.
 void fillUncertainties(const FitSums& sums,
                        const Rows& rows,
                        const NormalFit& solved,
-                       const BrdfData& data,
                        ModelFit& fit) {
     const auto n = static_cast<Index>(sums.count());
     fit.covariance = Eigen::MatrixXd::Constant(n, n, kNan);
@@ -126,23 +121,21 @@ void fillUncertainties(const FitSums& sums,
     for (Index i = 0; i < n; ++i) {
         if (!solved.atBound[static_cast<std::size_t>(i)]) free.push_back(i);
     }
-    const Eigen::MatrixXd inverse = solved.covariance(free, free);
+    // Of a fit without the shared errors: with them an LED's offset would take up what is common.
+    const auto curvature = spread.curvature(free, free).eval().ldlt();
     Eigen::VectorXd slope(static_cast<Index>(free.size()));
     for (std::size_t i = 0; i < free.size(); ++i) {
         const auto place = static_cast<std::size_t>(free[i]);
         slope(static_cast<Index>(i)) = sums.slope(place, solved.params[place]);
     }
-    const Eigen::MatrixXd toValues = slope.asDiagonal() * inverse;
-    const double scale = data.uKnown ? 1 : std::max(fit.chiSquarePerDof(), 0.0);
-    const bool plain = sums.byCovariance();
-    const Eigen::MatrixXd covariance =
-        plain
-            ? Eigen::MatrixXd(scale * toValues * slope.asDiagonal())
-            : Eigen::MatrixXd(scale * toValues * spread.squared(free, free) * toValues.transpose());
-    // Of a fit without the shared errors: with them an LED's offset would take up what is common.
+    const Eigen::MatrixXd left = curvature.solve(spread.noise(free, free));
+    const Eigen::MatrixXd byNumbers = sums.byCovariance()
+                                          ? Eigen::MatrixXd(solved.covariance(free, free))
+                                          : Eigen::MatrixXd(curvature.solve(left.transpose()));
+    const double scale = sums.assumedScale(fit.chiSquarePerDof());
+    const Eigen::MatrixXd covariance = scale * slope.asDiagonal() * byNumbers * slope.asDiagonal();
     const Eigen::MatrixXd shift =
-        slope.asDiagonal() *
-        spread.plain(free, free).ldlt().solve(spread.systematic(free, Eigen::all)).eval();
+        slope.asDiagonal() * curvature.solve(spread.systematic(free, Eigen::all)).eval();
     fit.covariance(free, free) = covariance;
     for (std::size_t i = 0; i < free.size(); ++i) {
         const auto row = static_cast<Index>(i);
@@ -160,6 +153,10 @@ void fillUncertainties(const FitSums& sums,
 
 void addWarnings(const NormalFit& solved, ModelFit& fit) {
     for (const FittedParameter& p : fit.parameters) {
+        if (!p.measured) {
+            fit.warnings.push_back(shownName(p) + " is of a band without values: " +
+                                   shortest(p.lower) + " in the spec");
+        }
         if (p.atLower || p.atUpper) {
             fit.warnings.push_back(shownName(p) + " is held by its " +
                                    (p.atLower ? "lower" : "upper") + " bound " +
@@ -188,8 +185,8 @@ void addWarnings(const NormalFit& solved, ModelFit& fit) {
     }
 }
 
-/// The model over the nodes of a row, against its values.
-struct Misfit {
+/// A model against the values of rows.
+struct Distance {
     double squares = 0;        ///< solid angle (f - model)^2
     double values = 0;         ///< solid angle f^2
     double energySquares = 0;  ///< likewise, times cos^2
@@ -198,15 +195,14 @@ struct Misfit {
     std::size_t count = 0;
 };
 
-Misfit misfitOf(const Family& family,
-                const FamilyPoint& point,
-                const BrdfData& data,
-                const Rows& rows) {
-    Misfit sum;
+Distance distanceOf(const Family& family,
+                    const FamilyPoint& point,
+                    const BrdfData& data,
+                    const Rows& rows) {
+    Distance sum;
     for (const std::uint32_t i : rows) {
         const FitRow& row = data.rows[i];
-        const LedBands f =
-            family.f(point, std::span(data.nodes.data() + row.firstNode, row.nodeCount));
+        const LedBands f = family.f(point, data.nodesOf(row));
         for (std::size_t b = 0; b < data.bandsUsed(); ++b) {
             if (!std::isfinite(row.f[b])) continue;
             const double r = row.f[b] - f.value[b];
@@ -215,7 +211,7 @@ Misfit misfitOf(const Family& family,
             sum.values += row.solidAngle * row.f[b] * row.f[b];
             sum.energySquares += energy * r * r;
             sum.energyValues += energy * row.f[b] * row.f[b];
-            sum.chiSquare += r * r / (row.uRandom[b] * row.uRandom[b]);
+            sum.chiSquare += r * r / (data.uOf(row, b) * data.uOf(row, b));
             ++sum.count;
         }
     }
@@ -242,26 +238,32 @@ void holdOut(const FitSums& sums,
         for (std::size_t i = 0; i < data.rows.size(); ++i) {
             if (out[data.rows[i].group]) held.push_back(static_cast<std::uint32_t>(i));
         }
-        const Misfit misfit = misfitOf(*fit.family, sums.point(solved.params), data, held);
-        if (misfit.count == 0) continue;
+        const Distance to = distanceOf(*fit.family, sums.point(solved.params), data, held);
+        if (!(to.energyValues > 0)) continue;
         fit.heldOut.push_back({.incidence = data.incidences[g],
-                               .rms = std::sqrt(misfit.squares / misfit.values),
-                               .energyRms = std::sqrt(misfit.energySquares / misfit.energyValues),
-                               .chiSquare = misfit.chiSquare / static_cast<double>(misfit.count)});
+                               .rms = std::sqrt(to.squares / to.values),
+                               .energyRms = std::sqrt(to.energySquares / to.energyValues),
+                               .chiSquare = to.chiSquare / static_cast<double>(to.count)});
+    }
+    fit.allHeldOut = fit.heldOut.size() == groups;
+    if (!fit.allHeldOut) {
+        fit.warnings.emplace_back(
+            "not every incidence can be predicted from the others: no "
+            "held-out error");
     }
 }
 
-bool sharesErrors(const BrdfData& data) {
-    return std::any_of(data.rows.begin(), data.rows.end(), [](const FitRow& row) {
-        return std::any_of(row.uState.begin(), row.uState.end(), [](double u) { return u > 0; });
-    });
+std::optional<double> rmsOf(const ModelFit& fit, double HeldOut::*member) {
+    if (!fit.allHeldOut) return std::nullopt;
+    double sum = 0;
+    for (const HeldOut& one : fit.heldOut) sum += one.*member * one.*member;
+    return std::sqrt(sum / static_cast<double>(fit.heldOut.size()));
 }
 
-std::optional<double> rmsOf(const std::vector<HeldOut>& all, double HeldOut::*member) {
-    if (all.empty()) return std::nullopt;
-    double sum = 0;
-    for (const HeldOut& one : all) sum += one.*member * one.*member;
-    return std::sqrt(sum / static_cast<double>(all.size()));
+/// -2 ln of the likelihood, but for a constant.
+double deviance(const ModelFit& fit) {
+    const auto n = static_cast<double>(fit.values);
+    return fit.uKnown ? fit.chiSquare : n * std::log(fit.chiSquare / n);
 }
 
 /// The best of the refined starts; empty where none could be refined.
@@ -270,7 +272,8 @@ std::optional<std::vector<double>> bestStart(const Family& family,
                                              const BrdfData& data,
                                              const ModelFitOptions& options,
                                              ModelFit& fit) {
-    const Rows rows = startRows(data, options);
+    const Rows rows =
+        thinnedRows(data, std::vector<bool>(data.incidences.size(), true), options.startRows);
     std::optional<std::vector<double>> best;
     double least = std::numeric_limits<double>::infinity();
     for (const Start& start : gridOfStarts(family, sums, rows)) {
@@ -289,16 +292,21 @@ std::optional<std::vector<double>> bestStart(const Family& family,
 
 }  // namespace
 
-double ModelFit::aic() const { return chiSquare + 2 * static_cast<double>(parameters.size()); }
-
-double ModelFit::bic() const {
-    return chiSquare +
-           static_cast<double>(parameters.size()) * std::log(static_cast<double>(values));
+std::size_t ModelFit::parameterCount() const {
+    return static_cast<std::size_t>(std::count_if(
+        parameters.begin(), parameters.end(), [](const FittedParameter& p) { return p.measured; }));
 }
 
-std::optional<double> ModelFit::heldOutRms() const { return rmsOf(heldOut, &HeldOut::rms); }
+double ModelFit::aic() const { return deviance(*this) + 2 * static_cast<double>(parameterCount()); }
+
+double ModelFit::bic() const {
+    return deviance(*this) +
+           static_cast<double>(parameterCount()) * std::log(static_cast<double>(values));
+}
+
+std::optional<double> ModelFit::heldOutRms() const { return rmsOf(*this, &HeldOut::rms); }
 std::optional<double> ModelFit::heldOutEnergyRms() const {
-    return rmsOf(heldOut, &HeldOut::energyRms);
+    return rmsOf(*this, &HeldOut::energyRms);
 }
 
 ModelFit fitModel(const Family& family, const BrdfData& data, const ModelFitOptions& options) {
@@ -306,25 +314,26 @@ ModelFit fitModel(const Family& family, const BrdfData& data, const ModelFitOpti
     ModelFit fit{.family = &family};
     fit.parameters = namedParameters(family, sums, data);
     fit.values = data.valueCount();
+    fit.uKnown = data.uKnown;
     fit.chiSquare = fit.condition = kNan;
     const auto n = static_cast<Index>(sums.count());
     fit.covariance = fit.correlation = Eigen::MatrixXd::Constant(n, n, kNan);
-    if (fit.values < sums.count()) {
+    if (fit.values <= fit.parameterCount()) {
         fit.status = FitStatus::TooFewData;
-        fit.message = std::to_string(fit.values) + " values for " + std::to_string(sums.count()) +
-                      " parameters";
+        fit.message = std::to_string(fit.values) + " values for " +
+                      std::to_string(fit.parameterCount()) + " parameters";
         return fit;
     }
     const auto start = bestStart(family, sums, data, options, fit);
     if (!start) {
         fit.status = FitStatus::BadStart;
-        fit.message = "the model is not finite at any start";
+        fit.message = "no start gives a finite cost: values or uncertainties are too extreme";
         return fit;
     }
     const Rows rows = allRows(data);
     NormalFit solved = solve(sums, rows, *start, {.iterations = options.maxIterations});
     fit.iterations = solved.iterations;
-    if (solved.usable() && sharesErrors(data)) {
+    if (solved.usable() && data.sharesErrors()) {
         sums.shareErrors(sums.point(solved.params));
         solved = solve(sums, rows, solved.params, {.iterations = options.maxIterations});
         fit.iterations += solved.iterations;
@@ -338,12 +347,13 @@ ModelFit fitModel(const Family& family, const BrdfData& data, const ModelFitOpti
     fit.chiSquare = sums.chiSquare(fit.point, rows);
     for (std::size_t i = 0; i < sums.count(); ++i) {
         FittedParameter& p = fit.parameters[i];
+        if (!p.measured) continue;
         p.value = sums.toValue(i, solved.params[i]);
         const bool low = solved.params[i] - sums.lower()[i] < sums.upper()[i] - solved.params[i];
         p.atLower = solved.atBound[i] && low;
         p.atUpper = solved.atBound[i] && !low;
     }
-    fillUncertainties(sums, rows, solved, data, fit);
+    fillUncertainties(sums, rows, solved, fit);
     addWarnings(solved, fit);
     if (fit.usable()) holdOut(sums, data, options, solved.params, fit);
     return fit;
@@ -354,10 +364,9 @@ std::vector<std::array<double, 3>> normalisedResiduals(const ModelFit& fit, cons
     if (fit.point.perBand.empty()) return all;
     for (std::size_t i = 0; i < data.rows.size(); ++i) {
         const FitRow& row = data.rows[i];
-        const LedBands f =
-            fit.family->f(fit.point, std::span(data.nodes.data() + row.firstNode, row.nodeCount));
+        const LedBands f = fit.family->f(fit.point, data.nodesOf(row));
         for (std::size_t b = 0; b < data.bandsUsed(); ++b) {
-            all[i][b] = (row.f[b] - f.value[b]) / row.uRandom[b];
+            all[i][b] = (row.f[b] - f.value[b]) / data.uOf(row, b);
         }
     }
     return all;

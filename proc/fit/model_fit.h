@@ -1,18 +1,22 @@
 #pragma once
 // A family fitted to data: the parameters that minimise sum w rho(((f - model) / u)^2) within their
-// bounds, and all that says how far to trust them.
+// bounds, and all that says how far to trust them. A band that was not measured has no parameters:
+// they stand in the list, held at their lower bounds, and count nowhere.
 //
 // Start: at each point of a grid of the shared parameters the per-band ones follow from a linear
 // problem; the best points are refined on some rows, the best of these on all rows.
 //
-// Reported: the random covariance (J^T W J)^-1 J^T W^2 J (J^T W J)^-1, which is (J^T W J)^-1 for
-// W = 1, of the parameters that no bound holds (NaN in the rows of the others), scaled by
-// chi-square per degree of freedom where the uncertainties of the data were assumed; the change of
-// the parameters when all values of a band shift by their systematic uncertainty together, bands
-// independent; warnings where the data do not tell parameters apart. Chi-square is always that of
-// f against u, whatever the weights of the fit.
+// Reported: the random covariance of the parameters that no bound holds (NaN in the rows of the
+// others): (J^T C^-1 J)^-1 where the fit is by the data's covariance C, else H^-1 N H^-1 with the
+// curvature H = sum w (rho' + 2 r^2 rho'') j j^T and N = sum (w rho')^2 j j^T, times r^2 each under
+// a robust loss (White's), plus what values share; scaled by chi-square per degree of freedom where
+// the uncertainties of the data were assumed and the loss is plain. The change of the parameters
+// when all values of a band shift by their systematic uncertainty together, bands independent.
+// Warnings where the data do not tell parameters apart. Chi-square is always that of f against u,
+// whatever the weights of the fit; where u was assumed, the information criteria are those of an
+// unknown variance, N ln(chi-square / N) in place of chi-square.
 //
-// Fewer values than parameters: TooFewData, all NaN. The same data give the same bits.
+// No more values than parameters: TooFewData, all NaN. The same data give the same bits.
 
 #include <Eigen/Core>
 #include <optional>
@@ -25,12 +29,13 @@
 
 namespace gonio::proc {
 
-/// What a residual is divided by and weighted with.
+/// w of a value.
 struct FitWeights {
-    bool uncertainty = true;  ///< divide by u_random; else by the band's rms value
-    bool cosine = false;      ///< weight by cos(theta_o): for the energy, not for the likelihood
+    bool uncertainty = true;  ///< by 1 / u_random^2; else by 1 / the band's mean square of f
+    bool cosine = false;      ///< by cos(theta_o): for the energy, not for the likelihood
 };
 
+/// rho(s), s = ((f - model) / u_random)^2.
 enum class RobustLoss {
     None,
     Huber,  ///< s to scale^2, then 2 scale sqrt(s) - scale^2
@@ -50,8 +55,9 @@ struct FittedParameter {
     std::string name;  ///< "ggx.alpha", "lambert.albedo"
     std::string unit;
     std::optional<Band> band;  ///< of a per-band parameter of a fit to three bands
-    double value = 0;
-    double uRandom = 0;  ///< NaN where it is held or not determined
+    bool measured = true;      ///< false: of a band without values
+    double value = 0;          ///< NaN where not measured
+    double uRandom = 0;        ///< NaN where it is held or not determined
     double uSystematic = 0;
     double lower = 0;
     double upper = 0;
@@ -66,7 +72,7 @@ struct HeldOut {
     double rms = 0;
     /// Likewise with each weighted by cos(theta_o), too: error of the reflected energy.
     double energyRms = 0;
-    /// Mean square of (f - model) / u.
+    /// Mean square of (f - model) / u, u as BrdfData::uOf.
     double chiSquare = 0;
 };
 
@@ -84,21 +90,25 @@ struct ModelFit {
     std::vector<std::string> warnings;
     double chiSquare = 0;
     std::size_t values = 0;
+    bool uKnown = true;
     std::vector<HeldOut> heldOut;
+    bool allHeldOut = false;  ///< each incidence could be predicted from the others
     std::string spec;
 
     /// Converged, or all but a free combination of parameters.
     [[nodiscard]] bool usable() const {
         return status == FitStatus::Converged || status == FitStatus::Singular;
     }
+    /// Of bands that were measured.
+    [[nodiscard]] std::size_t parameterCount() const;
     [[nodiscard]] double degreesOfFreedom() const {
-        return static_cast<double>(values) - static_cast<double>(parameters.size());
+        return static_cast<double>(values) - static_cast<double>(parameterCount());
     }
     [[nodiscard]] double chiSquarePerDof() const { return chiSquare / degreesOfFreedom(); }
-    /// chi-square + 2 k, and + k ln N.
+    /// chi-square + 2 k, and + k ln N; N ln(chi-square / N) for chi-square where u was assumed.
     [[nodiscard]] double aic() const;
     [[nodiscard]] double bic() const;
-    /// Root mean square over the incidences; empty where none was held out.
+    /// Root mean square over the incidences; empty where one could not be predicted.
     [[nodiscard]] std::optional<double> heldOutRms() const;
     [[nodiscard]] std::optional<double> heldOutEnergyRms() const;
 };
@@ -107,7 +117,8 @@ struct ModelFit {
                                 const BrdfData& data,
                                 const ModelFitOptions& options = {});
 
-/// (f - model) / u of each row and band; NaN where there is no value.
+/// (f - model) / u of each row and band, u of all but what is common (BrdfData::uOf); NaN where
+/// there is no value.
 [[nodiscard]] std::vector<std::array<double, 3>> normalisedResiduals(const ModelFit& fit,
                                                                      const BrdfData& data);
 

@@ -22,7 +22,7 @@ double restRmsOf(const ModelFit& fit, const BrdfData& data) {
         const FitRow& row = data.rows[i];
         for (std::size_t b = 0; b < data.bandsUsed(); ++b) {
             if (!std::isfinite(residuals[i][b])) continue;
-            const double r = residuals[i][b] * row.uRandom[b];
+            const double r = residuals[i][b] * data.uOf(row, b);
             rest += row.solidAngle * r * r;
             all += row.solidAngle * row.f[b] * row.f[b];
         }
@@ -63,7 +63,7 @@ std::vector<Misfit> worstRegions(const ModelFit& fit, const BrdfData& data) {
             if (!std::isfinite(r)) continue;
             sum.squares += r * r;
             sum.f += row.f[b];
-            sum.model += row.f[b] - r * row.uRandom[b];
+            sum.model += row.f[b] - r * data.uOf(row, b);
             ++sum.count;
         }
     }
@@ -97,10 +97,11 @@ double unmodelled(const ModelFit& best) {
 
 /// At least as good in all three, better in one.
 bool dominates(const RankedFit& a, const RankedFit& b) {
-    const double timeA = a.nanoseconds.value_or(0);
-    const double timeB = b.nanoseconds.value_or(0);
-    const std::size_t countA = a.fit.parameters.size();
-    const std::size_t countB = b.fit.parameters.size();
+    // Told apart by time only where both have been timed.
+    const double timeA = b.nanoseconds ? a.nanoseconds.value_or(0) : 0;
+    const double timeB = a.nanoseconds ? b.nanoseconds.value_or(0) : 0;
+    const std::size_t countA = a.fit.parameterCount();
+    const std::size_t countB = b.fit.parameterCount();
     const bool noWorse = a.error() <= b.error() && countA <= countB && timeA <= timeB;
     return noWorse && (a.error() < b.error() || countA < countB || timeA < timeB);
 }
@@ -126,18 +127,18 @@ void judge(Selection& selection, const BrdfData& data) {
         selection.verdict = "no family could be fitted";
         return;
     }
-    const ModelFit best = ranked[*selection.best].fit;
+    const ModelFit& best = ranked[*selection.best].fit;
     const double perDof = best.chiSquarePerDof();
     selection.gate = gateFor(best.degreesOfFreedom());
     selection.worst = worstRegions(best, data);
     const double noise = std::max(1.0, perDof);
     for (RankedFit& one : ranked) {
         if (!one.fit.usable()) continue;
-        const double more = static_cast<double>(best.parameters.size()) -
-                            static_cast<double>(one.fit.parameters.size());
+        const double more = static_cast<double>(best.parameterCount()) -
+                            static_cast<double>(one.fit.parameterCount());
         const double worse = (one.fit.chiSquare - best.chiSquare - unmodelled(best)) / noise;
         one.probability = chiSquareTail(worse, std::max(1.0, more));
-        one.rejected = one.probability < kRejection;
+        one.rejected = !(one.probability >= kRejection);
     }
     const std::string against =
         data.uKnown ? "the noise"
@@ -147,14 +148,16 @@ void judge(Selection& selection, const BrdfData& data) {
         selection.verdict = "none fits: the best, " + best.family->name() + ", misfits by " +
                             fixed(perDof, 2) + " times " + against + " squared (limit " +
                             fixed(selection.gate, 2) + "), most " + where.region + " at " +
-                            fixed(where.incidence.degrees(), 1) + " deg, where f is " +
-                            fixed(where.meanRatio, 2) + " times the model";
+                            fixed(where.incidence.degrees(), 1) + " deg, where " +
+                            (std::isfinite(where.meanRatio)
+                                 ? "f is " + fixed(where.meanRatio, 2) + " times the model"
+                                 : "the model is 0");
         return;
     }
     for (std::size_t i = 0; i < ranked.size(); ++i) {
         if (ranked[i].rejected || !ranked[i].fit.usable()) continue;
         const auto key = [&](std::size_t k) {
-            return std::pair(ranked[k].fit.parameters.size(), ranked[k].fit.chiSquare);
+            return std::pair(ranked[k].fit.parameterCount(), ranked[k].fit.chiSquare);
         };
         if (!selection.chosen || key(i) < key(*selection.chosen)) selection.chosen = i;
     }
@@ -162,7 +165,7 @@ void judge(Selection& selection, const BrdfData& data) {
     selection.verdict = chosen.family->name() + " is the simplest that " + against +
                         " cannot reject: chi-square per degree of freedom " +
                         fixed(chosen.chiSquarePerDof(), 3) + ", " +
-                        std::to_string(chosen.parameters.size()) + " parameters";
+                        std::to_string(chosen.parameterCount()) + " parameters";
 }
 
 Selection ranked(std::vector<ModelFit> fits,
@@ -178,6 +181,11 @@ Selection ranked(std::vector<ModelFit> fits,
         }
         selection.ranked.push_back(std::move(one));
     }
+    const bool anyHeldOut =
+        std::any_of(selection.ranked.begin(), selection.ranked.end(), [](const RankedFit& one) {
+            return one.fit.heldOutEnergyRms().has_value();
+        });
+    for (RankedFit& one : selection.ranked) one.byRest = !anyHeldOut;
     std::stable_sort(selection.ranked.begin(),
                      selection.ranked.end(),
                      [](const RankedFit& a, const RankedFit& b) {
@@ -191,7 +199,10 @@ Selection ranked(std::vector<ModelFit> fits,
 
 }  // namespace
 
-double RankedFit::error() const { return fit.heldOutEnergyRms().value_or(restRms); }
+double RankedFit::error() const {
+    if (byRest) return restRms;
+    return fit.heldOutEnergyRms().value_or(std::numeric_limits<double>::infinity());
+}
 
 Selection selectModel(const std::vector<const Family*>& families,
                       const BrdfData& data,

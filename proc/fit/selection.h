@@ -24,9 +24,11 @@ struct RankedFit {
     bool rejected = true;    ///< by the noise, against the best
     double probability = 0;  ///< that noise makes it as much worse than the best as it is
 
-    /// What is ranked by: the held-out error, or where there is none the rms of what is left.
+    /// What is ranked by: the held-out error, infinite where there is none; where no fit has one,
+    /// the rms of what is left.
     [[nodiscard]] double error() const;
-    double restRms = 0;  ///< of f - model over that of f, all rows
+    double restRms = 0;   ///< of f - model over that of f, all rows
+    bool byRest = false;  ///< no fit has a held-out error
 };
 
 /// Where a fit misses most: a part of one incidence.
@@ -34,7 +36,7 @@ struct Misfit {
     Radians incidence;
     std::string region;    ///< "toward the light", "about the mirror direction", ...
     double chiSquare = 0;  ///< mean square of (f - model) / u there
-    double meanRatio = 0;  ///< sum of f over sum of the model
+    double meanRatio = 0;  ///< sum of f over sum of the model; not finite where that is 0
     std::size_t values = 0;
 };
 

@@ -240,7 +240,8 @@ Result<std::vector<double>> numbersOf(const Points& points, std::string_view col
             empty ? std::numeric_limits<double>::quiet_NaN() : parseDouble(field);
         if (!number) {
             return Error{ErrorKind::File,
-                         "csv: row " + std::to_string(i + 1) + ": " + std::string(column) + ": " +
+                         "csv: data row " + std::to_string(i + 1) + ": " + std::string(column) +
+                             ": " +
                              shown(field) + ", wanted a number"};
         }
         numbers.push_back(*number);

@@ -25,27 +25,13 @@ struct NamedPower {
     Lobe (*make)(const BlinnPhongNumbers&);
 };
 
-template <PowerForm Form>
-constexpr NamedPower named(std::string_view name) {
-    return {name, blinnPhongBy<PowerOfForm<Form>>};
+template <std::size_t... I>
+constexpr auto powersByName(std::index_sequence<I...>) {
+    return std::array{
+        NamedPower{"by-effort", blinnPhongBy<PowerOfEffort>},
+        NamedPower{name(kPowerForms[I]), blinnPhongBy<PowerOfForm<kPowerForms[I]>>}...};
 }
-
-constexpr std::array kPowers{NamedPower{"by-effort", blinnPhongBy<PowerOfEffort>},
-                             named<PowerForm::Pow>("pow"),
-                             named<PowerForm::Full75>("full75"),
-                             named<PowerForm::Full54>("full54"),
-                             named<PowerForm::Lite>("lite"),
-                             named<PowerForm::Sq8d3>("sq8d3"),
-                             named<PowerForm::Sq8>("sq8"),
-                             named<PowerForm::Rec3m4>("rec3m4"),
-                             named<PowerForm::Rec2m4>("rec2m4"),
-                             named<PowerForm::Schlick>("schlick"),
-                             named<PowerForm::Bps>("bps"),
-                             named<PowerForm::F8>("f8"),
-                             named<PowerForm::Quadratic>("quadratic"),
-                             named<PowerForm::Cubic>("cubic"),
-                             named<PowerForm::Gauss>("gauss"),
-                             named<PowerForm::Lagarde>("lagarde")};
+constexpr auto kPowers = powersByName(std::make_index_sequence<kPowerForms.size()>{});
 
 Lobe makeBlinnPhong(SpecParameters& p, EvalPath path) {
     std::vector<std::string> names;

@@ -28,9 +28,10 @@ template <Effort E, class P, class D>
 [[nodiscard]] P cosinePower(const P& n, const NearOne<D>& x) {
     if constexpr (E == Effort::Reference || !std::floating_point<P>) {
         using std::exp;
-        using std::pow;
+        using std::log;
+        using std::log1p;
         if (!(x.c > D(0))) return P(0);
-        return exp(n * (x.c > D(0.5) ? std::log1p(-x.t) : std::log(x.c)));
+        return exp(n * (x.c > D(0.5) ? log1p(-x.t) : log(x.c)));
     } else {
         const P least(std::numeric_limits<P>::min());
         const NearOne<P> positive{.c = std::max(P(x.c), least), .t = P(x.t)};

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "proc/core/number_table.h"
+#include "proc/core/number_text.h"
 
 namespace gonio::proc {
 namespace {
@@ -68,8 +69,14 @@ Result<std::vector<ColumnAccuracy>> accuracyOf(const ReferenceTable& table,
                            .rows = numbers.rows.size()});
     }
     const std::optional<std::size_t> alpha = alphaOf(table);
+    if (numbers.rows.empty()) return Error{ErrorKind::File, "a head without rows"};
     for (const std::vector<double>& row : numbers.rows) {
         const std::vector<double> in = picked(row, *inputs);
+        if (alpha && !(in[*alpha] > 0)) {
+            return Error{ErrorKind::File,
+                         "row " + std::to_string(&row - numbers.rows.data() + 1) + ": alpha is " +
+                             shortest(in[*alpha]) + ", wanted above 0"};
+        }
         const std::vector<NumericErrors> errors = errorsOf(table, in, picked(row, *outputs));
         for (std::size_t i = 0; i < columns.size(); ++i) {
             columns[i].worst.take(errors[i]);

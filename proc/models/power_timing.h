@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "proc/core/stopwatch.h"
-#include "proc/models/power_study.h"
+#include "proc/models/power_errors.h"
 
 namespace gonio::proc {
 

@@ -21,7 +21,9 @@
 // of L costs at most 0.37 e of the peak at any n. config/tools/fit_powers.py fits them anew.
 // Below n = 8 take full75, full54 or pow: the others err by up to 0.22 there.
 
+#include <array>
 #include <concepts>
+#include <string_view>
 
 #include "proc/models/fast_exp.h"
 #include "proc/models/kernel.h"
@@ -45,6 +47,53 @@ enum class PowerForm {
     Gauss,
     Lagarde
 };
+
+/// All of them, ours first.
+inline constexpr std::array kPowerForms{PowerForm::Full75,
+                                        PowerForm::Full54,
+                                        PowerForm::Lite,
+                                        PowerForm::Sq8d3,
+                                        PowerForm::Sq8,
+                                        PowerForm::Rec3m4,
+                                        PowerForm::Rec2m4,
+                                        PowerForm::Schlick,
+                                        PowerForm::Bps,
+                                        PowerForm::F8,
+                                        PowerForm::Quadratic,
+                                        PowerForm::Cubic,
+                                        PowerForm::Gauss,
+                                        PowerForm::Lagarde,
+                                        PowerForm::Pow};
+/// As a spec names it.
+[[nodiscard]] constexpr std::string_view name(PowerForm form) {
+    switch (form) {
+        case PowerForm::Pow: return "pow";
+        case PowerForm::Full75: return "full75";
+        case PowerForm::Full54: return "full54";
+        case PowerForm::Lite: return "lite";
+        case PowerForm::Sq8d3: return "sq8d3";
+        case PowerForm::Sq8: return "sq8";
+        case PowerForm::Rec3m4: return "rec3m4";
+        case PowerForm::Rec2m4: return "rec2m4";
+        case PowerForm::Schlick: return "schlick";
+        case PowerForm::Bps: return "bps";
+        case PowerForm::F8: return "f8";
+        case PowerForm::Quadratic: return "quadratic";
+        case PowerForm::Cubic: return "cubic";
+        case PowerForm::Gauss: return "gauss";
+        case PowerForm::Lagarde: return "lagarde";
+    }
+    return "";
+}
+
+/// Proposed here, not in a paper nor by the library.
+[[nodiscard]] constexpr bool isOurs(PowerForm form) {
+    for (const PowerForm one : kPowerForms) {
+        if (one == PowerForm::Schlick) return false;
+        if (one == form) return true;
+    }
+    return false;
+}
 
 /// A cosine and 1 - cosine, the latter computed without cancellation.
 template <class D>

@@ -9,20 +9,29 @@
 namespace gonio::proc {
 namespace {
 
-/// '+' joins lobes, except inside a number's exponent ("1e+3").
-std::vector<std::string_view> splitLobes(std::string_view spec) {
-    std::vector<std::string_view> lobes;
+/// Parts of a text at each place, outside of double quotes, of which `separates` is true.
+template <class Separates>
+std::vector<std::string_view> partsOf(std::string_view text, Separates&& separates) {
+    std::vector<std::string_view> parts;
     std::size_t start = 0;
-    for (std::size_t i = 0; i < spec.size(); ++i) {
-        if (spec[i] != '+') continue;
-        const bool exponent = i >= 2 && (spec[i - 1] == 'e' || spec[i - 1] == 'E') &&
-                              spec[i - 2] >= '0' && spec[i - 2] <= '9';
-        if (exponent) continue;
-        lobes.push_back(spec.substr(start, i - start));
+    bool quoted = false;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (text[i] == '"') quoted = !quoted;
+        if (quoted || !separates(i)) continue;
+        parts.push_back(text.substr(start, i - start));
         start = i + 1;
     }
-    lobes.push_back(spec.substr(start));
-    return lobes;
+    parts.push_back(text.substr(start));
+    return parts;
+}
+
+/// '+' joins lobes, except inside a number's exponent ("1e+3").
+std::vector<std::string_view> splitLobes(std::string_view spec) {
+    return partsOf(spec, [spec](std::size_t i) {
+        const bool exponent = i >= 2 && (spec[i - 1] == 'e' || spec[i - 1] == 'E') &&
+                              spec[i - 2] >= '0' && spec[i - 2] <= '9';
+        return spec[i] == '+' && !exponent;
+    });
 }
 
 std::vector<CatalogueEntry> allModels() {
@@ -40,7 +49,8 @@ std::vector<CatalogueEntry> allModels() {
 }
 
 Result<Lobe> makeLobe(std::string_view text, EvalPath path) {
-    std::vector<std::string_view> items = split(text, ',');
+    std::vector<std::string_view> items =
+        partsOf(text, [text](std::size_t i) { return text[i] == ','; });
     const std::string name(items.front());
     items.erase(items.begin());
     const std::vector<CatalogueEntry> models = allModels();
@@ -64,6 +74,10 @@ Result<Lobe> makeLobe(std::string_view text, EvalPath path) {
 }  // namespace
 
 Result<std::unique_ptr<const AnalyticModel>> makeModel(std::string_view spec, EvalPath path) {
+    if (std::count(spec.begin(), spec.end(), '"') % 2 != 0) {
+        return Error{ErrorKind::Usage,
+                     "model '" + std::string(spec) + "': a double quote is not closed"};
+    }
     std::vector<Lobe> lobes;
     for (std::string_view text : splitLobes(spec)) {
         Result<Lobe> lobe = makeLobe(text, path);

@@ -34,7 +34,11 @@ SpecParameters::SpecParameters(std::string lobe, const std::vector<std::string_v
             continue;
         }
         const std::string key(item.substr(0, equals));
-        if (!values_.emplace(key, item.substr(equals + 1)).second) {
+        std::string_view value = item.substr(equals + 1);
+        if (value.size() > 1 && value.starts_with('"') && value.ends_with('"')) {
+            value = value.substr(1, value.size() - 2);
+        }
+        if (!values_.emplace(key, value).second) {
             complain("parameter '" + key + "' is given twice");
         }
     }

@@ -61,11 +61,11 @@ private:
 
 CellSignal CellSignal::missing(std::size_t cells) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    return {std::vector(cells, nan),
-            std::vector(cells, nan),
-            std::vector(cells, 0.0),
-            std::vector(cells, Flags{}),
-            std::vector(cells, 0.0)};
+    return {.signal = std::vector(cells, nan),
+            .variance = std::vector(cells, nan),
+            .nEff = std::vector(cells, 0.0),
+            .flags = std::vector(cells, Flags{}),
+            .uGlare = std::vector(cells, 0.0)};
 }
 
 Binning::Binning(const LensMap& map, const Window& window, Radians field) : window_(window) {
@@ -76,6 +76,7 @@ Binning::Binning(const LensMap& map, const Window& window, Radians field) : wind
     std::vector<float> perCosine(size.pixels()), solidAngle(size.pixels());
     std::vector<std::vector<CellShare>> rows(static_cast<std::size_t>(size.height));
     const double area = window.binning * window.binning;
+    pixelSolidAngle_ = area * map.solidAnglePerPixel(map.pointOf(Direction()));
     parallelFor(rows.size(), [&](IndexRange range) {
         const auto corners = [&](std::size_t y) {
             std::vector<std::uint32_t> cells;
@@ -130,11 +131,17 @@ std::span<const Binning::Share> Binning::sharesOf(std::size_t cell) const {
     return std::span(shares_).subspan(firstShare_[cell], firstShare_[cell + 1] - firstShare_[cell]);
 }
 
+CellSignal Binning::blank() const {
+    CellSignal signal = CellSignal::missing(CellGrid::count());
+    signal.pixelSolidAngle = pixelSolidAngle_;
+    return signal;
+}
+
 CellSignal Binning::bin(const Image<float>& radiance, const Image<float>& variance) const {
     assert(radiance.size() == window_.sent() && variance.size() == radiance.size());
     const Picture picture{
         .radiance = radiance.pixels(), .variance = variance.pixels(), .second = {}};
-    CellSignal out = CellSignal::missing(CellGrid::count());
+    CellSignal out = blank();
     parallelFor(CellGrid::count(), [&](IndexRange cells) {
         for (std::size_t cell = cells.begin; cell < cells.end; ++cell) bin(picture, cell, out);
     });
@@ -148,7 +155,7 @@ Binning::Both Binning::bin(const Image<float>& radiance,
            second.size() == radiance.size());
     const Picture picture{
         .radiance = radiance.pixels(), .variance = variance.pixels(), .second = second.pixels()};
-    Both both{.first = CellSignal::missing(CellGrid::count()), .second = {}};
+    Both both{.first = blank(), .second = {}};
     both.second = both.first.signal;
     parallelFor(CellGrid::count(), [&](IndexRange cells) {
         for (std::size_t cell = cells.begin; cell < cells.end; ++cell) {

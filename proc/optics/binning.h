@@ -30,6 +30,8 @@ struct CellSignal {
     std::vector<Flags> flags;  ///< Measured, or why not
     /// Standard uncertainty of the glare that was taken off (glare.h): one error for all cells.
     std::vector<double> uGlare;
+    /// Of the pixels that it was binned from, in the middle of the field, in steradian; 0: of none.
+    double pixelSolidAngle = 0;
 
     [[nodiscard]] static CellSignal missing(std::size_t cells);
     [[nodiscard]] std::size_t size() const { return signal.size(); }
@@ -71,8 +73,10 @@ private:
     };
     /// The second picture's signal; NaN where the cell is not present.
     double bin(const Picture& picture, std::size_t cell, CellSignal& out) const;
+    [[nodiscard]] CellSignal blank() const;
 
     Window window_;
+    double pixelSolidAngle_ = 0;
     std::vector<Share> shares_;            // sorted by cell
     std::vector<std::size_t> firstShare_;  // by cell, and one behind
     std::vector<double> pixelsIn_;         // by cell

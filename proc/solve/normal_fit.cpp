@@ -247,6 +247,7 @@ NormalFit fitNormal(const NormalProblem& problem) {
         at[i] = std::clamp(at[i], problem.lower[i], problem.upper[i]);
     }
     std::vector<bool> held(n, false);
+    for (std::size_t i = 0; i < n; ++i) held[i] = problem.lower[i] == problem.upper[i];
     if (!FreePart(problem, at, held).sums(at.data(), Wanted::Derivatives)) {
         return failed(std::move(fit), FitStatus::BadStart, "no finite sums at the start");
     }

@@ -37,7 +37,7 @@ struct NormalProblem {
     Sums sums;
     std::size_t residualCount = 0;
     std::vector<double> start;
-    std::vector<double> lower;  ///< one per parameter
+    std::vector<double> lower;  ///< one per parameter; equal to the upper one: held there
     std::vector<double> upper;
     int maxIterations = 100;
     double tolerance = 1e-12;  ///< relative change of the cost that ends the search

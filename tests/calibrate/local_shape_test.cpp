@@ -43,6 +43,7 @@ TEST(LocalShape, AFlankThatFallsByAFactorFromCellToCellHasItsOwnSlope) {
     EXPECT_NEAR(shape.secondOrder(f, DirectionSpread::even(Radians(off))) / f,
                 std::sqrt(0.75) * 0.04,
                 1e-6);
+    EXPECT_NEAR(shape.laplacian(f) / f, steep * steep, 1e-6 * steep * steep);
 }
 
 TEST(LocalShape, WhereFIsLostInNoiseDifferencesOfFCount) {

@@ -170,6 +170,29 @@ TEST(TwoPoint, LedDriftCountsTwiceForBrightSamplesAndIsNotRandom) {
     EXPECT_EQ(with.samples.f[cell], without.samples.f[cell]);
 }
 
+/// The mean over two boxes of a pixel's side of a lobe that is exp(-x^2 / 2 s^2) along theta.
+TEST(TwoPoint, PixelsBlurALobeByWhatTheirSizeIsBudgetedFor) {
+    constexpr double kWidth = 2 * kPi / 180;
+    const Tiles tiles;
+    const Radians middle = 40.5_deg;
+    CellSignal sample = signalOf([&](const Direction& wo) {
+        const double off = (wo.theta() - middle).value() / kWidth;
+        return std::exp(-off * off / 2);
+    });
+    const CellSamples sharp = tiles(sample).samples;
+    const double side = 0.2 * kPi / 180;
+    sample.pixelSolidAngle = side * side;
+    const CellSamples blurred = tiles(sample).samples;
+    const std::size_t cell =
+        *CellGrid::cellAt(Direction::fromSpherical(middle, Radians::fromDegrees(50)));
+    const double added =
+        std::sqrt(std::pow(blurred.uSystematic[cell], 2) - std::pow(sharp.uSystematic[cell], 2));
+    // A Gaussian of variance s^2 + p^2 / 6 is lower by this at its top.
+    const double loss = 1 - 1 / std::sqrt(1 + side * side / (6 * kWidth * kWidth));
+    EXPECT_NEAR(added / sharp.f[cell], loss, 0.02 * loss);
+    EXPECT_EQ(blurred.f[cell], sharp.f[cell]);
+}
+
 TEST(TwoPoint, GlareIsWhatThreeSignalsOfThatErrorDo) {
     const Tiles tiles;
     const auto raised = [](CellSignal signal, double error, bool known) {
@@ -284,7 +307,7 @@ TEST(TwoPoint, AMissingReferenceCellIsMissing) {
 TEST(TwoPoint, BudgetNamesEveryComponent) {
     const Tiles tiles;
     const Budget budget = tiles(signalOf(slanted), 0.1_deg, 0.002).budget;
-    ASSERT_EQ(budget.size(), 11U);
+    ASSERT_EQ(budget.size(), 12U);
     for (const BudgetComponent& component : budget) {
         EXPECT_TRUE(component.type == 'A' || component.type == 'B');
         EXPECT_FALSE(name(component.correlation).empty());

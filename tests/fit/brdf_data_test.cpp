@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
+#include <set>
 
 #include "proc/fit/family.h"
 #include "proc/fit/model_fit.h"
+#include "proc/fit/thinned_rows.h"
 #include "proc/models/spec.h"
 #include "tests/support/sample_sets.h"
 
@@ -135,6 +138,16 @@ TEST(BrdfData, AZemaxTableGivesEachDirectionOnce) {
     EXPECT_EQ(data->rows.size(), 2U * (1 + 3 * 2));
     EXPECT_EQ(data->bands, BandCount::One);
     EXPECT_FALSE(data->uKnown);
+    // Square degrees about the mirror direction: a cap to 5 degrees, a ring to 15, one to 20 of
+    // which the last node has the inner half; the plane of symmetry cuts the outer azimuths' cells.
+    const double cap = (1 - std::cos(Radians(5_deg).value())) * 180 / kPi * 180;
+    const double ring = std::sin(Radians(10_deg).value()) * 10;
+    EXPECT_NEAR(data->rows[0].solidAngle, cap, 1e-12 * cap);
+    EXPECT_NEAR(data->rows[1].solidAngle, ring * 45, 1e-12 * ring * 45);
+    double sum = 0;
+    for (const FitRow& row : data->rows) sum += row.group == 0 ? row.solidAngle : 0;
+    const double whole = (1 - std::cos(Radians(20_deg).value())) * 180 / kPi * 180;
+    EXPECT_NEAR(sum, whole, 0.08 * whole);  // of steps as coarse as these
     table.colour = TableColour::Xyz;
     EXPECT_FALSE(fitDataOf(table));
 }
@@ -150,25 +163,80 @@ TEST(BrdfData, ABudgetSplitsTheSystematicUncertainty) {
     const BrdfData data = fitDataOf(set);
     for (const FitRow& row : data.rows) {
         const bool listed = row.group == 1;
-        EXPECT_NEAR(row.uRandom[0], 0.2 * (listed ? std::hypot(0.01, 0.003) : 0.01), 1e-12);
-        EXPECT_NEAR(row.uState[0], listed ? 0.004 : 0, 1e-12);
-        const double all = std::hypot(row.uSystematic[0], 0.2 * row.uState[0]);
-        EXPECT_NEAR(std::hypot(all, row.uRandom[0]), 0.2 * std::hypot(0.01, 0.02), 1e-12);
-        EXPECT_EQ(row.uState[1], 0);
+        const BudgetShare share = data.shareOf(row, 0);
+        EXPECT_NEAR(row.uRandom[0], 0.2 * 0.01, 1e-12);
+        EXPECT_NEAR(share.state, listed ? 0.004 : 0, 1e-12);
+        EXPECT_NEAR(share.patch, listed ? 0.003 : 0, 1e-12);
+        const double u = data.uOf(row, 0);
+        EXPECT_NEAR(std::hypot(row.uSystematic[0], u), 0.2 * std::hypot(0.01, 0.02), 1e-12);
+        EXPECT_EQ(data.shareOf(row, 1).state, 0);
     }
     for (const char* bad : {"banana", "{}", "[1,2]", R"([{"led":99,"band":"r"}])"}) {
         set.info.budgetJson = bad;
-        EXPECT_EQ(fitDataOf(set).rows[0].uState[0], 0);
+        EXPECT_FALSE(fitDataOf(set).sharesErrors());
     }
 }
 
-TEST(BrdfData, ThinningKeepsTheBrightestAndIsEvenElsewhere) {
+TEST(BrdfData, FlagsOfABandLeaveThatBandOut) {
+    const std::string head =
+        "theta_i,phi_i,theta_o,phi_o,f_r,f_g,f_b,u_r,u_g,u_b,flags_r,flags_g,flags_b\n";
+    const auto saturated = std::to_string(Flags{Flag::Measured, Flag::Saturated}.mask());
+    const auto data = fromCsv(head + "0,0,10,0,1,2,3,1,1,1,1," + saturated + ",1\n");
+    ASSERT_TRUE(data) << data.error().message;
+    EXPECT_EQ(data->valueCount(), 2U);
+    EXPECT_TRUE(std::isnan(data->rows[0].f[1]));
+    for (const char* mask : {"-1", "2.5", "1e9", "nan"}) {
+        const auto bad = fromCsv(head + "0,0,10,0,1,2,3,1,1,1,1," + mask + ",1\n");
+        ASSERT_FALSE(bad) << mask;
+        EXPECT_NE(bad.error().message.find("flags_g"), std::string::npos) << bad.error().message;
+    }
+}
+
+TEST(BrdfData, ManyIncidencesAreJoinedAndNeverCut) {
+    std::string csv = "theta_i,phi_i,theta_o,phi_o,f,u\n";
+    for (int i = 0; i < 18; ++i) {
+        for (int o = 0; o < 7; ++o) {
+            csv += std::to_string(5 * i) + ",0," + std::to_string(10 * o) + ",0,0.1,0.01\n";
+        }
+    }
+    const auto data = fromCsv(csv);
+    ASSERT_TRUE(data) << data.error().message;
+    EXPECT_GE(data->incidences.size(), 9U);
+    EXPECT_LE(data->incidences.size(), 12U);
+    std::map<int, std::set<std::uint16_t>> groups;
+    for (const FitRow& row : data->rows) {
+        const Vec<double>& in = data->nodesOf(row).front().pair.in;
+        const double degrees = Radians(std::atan2(std::hypot(in.x, in.y), in.z)).degrees();
+        groups[static_cast<int>(std::lround(degrees))].insert(row.group);
+    }
+    EXPECT_EQ(groups.size(), 18U);
+    for (const auto& [degrees, all] : groups) EXPECT_EQ(all.size(), 1U) << degrees;
+}
+
+TEST(BrdfData, AnIncidenceWithoutValuesIsNoGroup) {
+    const auto data = fromCsv(
+        "theta_i,phi_i,theta_o,phi_o,f,u\n0,0,10,0,0.1,0\n20,0,10,0,0.1,0.01\n"
+        "40,0,10,0,0.1,0.01\n");
+    ASSERT_TRUE(data) << data.error().message;
+    ASSERT_EQ(data->incidences.size(), 2U);
+    EXPECT_NEAR(data->incidences[0].degrees(), 20, 1e-9);
+    EXPECT_EQ(data->leftOut, 1U);
+}
+
+TEST(BrdfData, ThinningKeepsTheNearestToTheMirrorDirectionAndIsEvenElsewhere) {
     BrdfData data = fitDataOf(test::sampleSet([](Radians, const Direction&) { return 0.2; }));
-    data.rows[1234].f[1] = 50;
     const auto rows = thinnedRows(data, {true, true, false, true}, 600);
     EXPECT_LE(rows.size(), 606U);
     EXPECT_GE(rows.size(), 590U);
-    EXPECT_NE(std::find(rows.begin(), rows.end(), 1234U), rows.end());
+    std::size_t near = 0;
+    for (const std::uint32_t i : rows) {
+        const Pair<double>& pair = data.nodesOf(data.rows[i]).front().pair;
+        near += pair.out.z * pair.in.z - pair.out.x * pair.in.x > std::cos(0.1) ? 1 : 0;
+    }
+    EXPECT_GE(near, 150U);
+    // Whatever the values are.
+    for (FitRow& row : data.rows) row.f[1] = -row.f[1];
+    EXPECT_EQ(thinnedRows(data, {true, true, false, true}, 600), rows);
     for (const std::uint32_t i : rows) EXPECT_NE(data.rows[i].group, 2);
     EXPECT_EQ(thinnedRows(data, {true, true, true, true}, 1'000'000).size(), data.rows.size());
 }

@@ -21,13 +21,31 @@ TEST(ChiSquare, OneDegreeOfFreedomIsTheTailOfTheNormalDistribution) {
     }
 }
 
-TEST(ChiSquare, HasHalfItsProbabilityAtTheMedianOfManyDegrees) {
-    // Wilson and Hilferty's median dof (1 - 2 / (9 dof))^3; its error falls as 1 / dof^(3/2).
-    for (const double dof : {100.0, 1e4, 1e6}) {
-        const double median = dof * std::pow(1 - 2 / (9 * dof), 3);
-        EXPECT_NEAR(chiSquareTail(median, dof), 0.5, 1e-3) << dof;
+/// Of an even number of degrees it is a finite sum, e^(-x/2) sum_(j < dof/2) (x/2)^j / j!: worked
+/// out to 60 digits.
+TEST(ChiSquare, IsTheFiniteSumOfEvenDegrees) {
+    const struct {
+        double dof, x, tail;
+    } exact[] = {{10, 3, 0.98142406377785929},
+                 {10, 40, 1.6944743930067385e-05},
+                 {100, 80, 0.92966493334060507},
+                 {100, 180, 1.6494985017178249e-06},
+                 {1000, 1000, 0.49405285382923964},
+                 {1000, 1300, 3.8897364994868526e-10},
+                 {10000, 9900, 0.75952008568397933},
+                 {10000, 10000, 0.49811936596618267},
+                 {10000, 11000, 3.6183295580964791e-12},
+                 {1000000, 1000000, 0.49981193680339447},
+                 {1000000, 1005000, 0.00020767800946703004},
+                 {1000000, 1010000, 9.0685288232620768e-13}};
+    for (const auto& one : exact) {
+        const double bound = one.dof > 1e4 ? 1e-9 : 1e-12;
+        EXPECT_NEAR(chiSquareTail(one.x, one.dof), one.tail, bound * one.tail)
+            << one.x << " " << one.dof;
     }
 }
+
+TEST(ChiSquare, OfNoNumberIsNone) { EXPECT_TRUE(std::isnan(chiSquareTail(std::nan(""), 3))); }
 
 TEST(ChiSquare, FallsFromOneToZero) {
     EXPECT_EQ(chiSquareTail(0, 3), 1);

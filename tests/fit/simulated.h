@@ -42,6 +42,7 @@ inline proc::BrdfData simulated(const Scatterer& surface,
             row.firstNode = static_cast<std::uint32_t>(data.nodes.size());
             row.group = group;
             row.cell = static_cast<std::int32_t>(cell);
+            row.patch = static_cast<std::uint32_t>(proc::patchOf(cell));
             row.solidAngle = proc::CellGrid::solidAngle(cell);
             row.cosThetaO = pair.out.z();
             data.nodes.push_back({proc::pairOf<double>(pair), 1});

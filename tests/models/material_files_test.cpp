@@ -112,6 +112,11 @@ TEST_F(MaterialFiles, PublishedFitsBecomeSpecsOfOurModels) {
     ASSERT_TRUE(model) << model.error().message;
     const double f = (*model)->answer({Direction(), Direction()}).f[Band::G];
     EXPECT_NEAR(f, 0.2 / kPi + 2 / (4 * kPi * 0.05 * 0.05), 1e-9);
+    const fs::path odd = file.parent_path() / "a+b,c.fit";
+    fs::copy_file(file, odd);
+    EXPECT_EQ(errorOf("merl-fit,material=a,F=\"" + odd.string() + "\"+lambert,albedo=0.1"), "");
+    EXPECT_NE(errorOf("merl-fit,material=a,F=\"" + odd.string()).find("not closed"),
+              std::string::npos);
     EXPECT_NE(errorOf("merl-fit,material=c,F=" + file.string()).find("no material 'c'"),
               std::string::npos);
     EXPECT_NE(errorOf("merl-fit,material=c").find("'F' is missing"), std::string::npos);

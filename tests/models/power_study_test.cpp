@@ -1,7 +1,7 @@
 // The study of the forms of cos^n: the paper's regression to its printed digits, the errors of
 // every form, what of the paper reproduces, and how times are taken and compared.
 
-#include "proc/models/power_study.h"
+#include "proc/models/paper_figures.h"
 
 #include <gtest/gtest.h>
 
@@ -118,7 +118,7 @@ TEST(PowerErrors, OfFull75AreThePolynomialsInDoubleAndARoundingMoreInFloat) {
 }
 
 TEST(PowerErrors, OfOursHoldToAMillionFromEightOnAndNotBelow) {
-    for (const PowerForm form : powerForms()) {
+    for (const PowerForm form : kPowerForms) {
         if (!isOurs(form)) continue;
         for (const Precision precision : {Precision::Double, Precision::Float}) {
             const PowerErrors& e = errorsOf(form, precision);
@@ -135,12 +135,16 @@ TEST(PowerErrors, NameThePeakTheLeastValueAndTheResidue) {
     EXPECT_NEAR(bps.peak, 0.9927, 5e-5);
     EXPECT_NEAR(bps.least, -0.0094, 5e-5);
     EXPECT_NEAR(bps.residue, 0.0094, 5e-5);
-    for (const PowerForm form : powerForms()) {
+    for (const PowerForm form : kPowerForms) {
         const PowerErrors& e = errorsOf(form, Precision::Double);
         if (form == PowerForm::Bps) continue;
         EXPECT_EQ(e.peak, 1) << name(form);
         EXPECT_GE(e.least, 0) << name(form);
     }
+}
+
+PowerError powerError(PowerForm form, double n) {
+    return powerErrorsAt(n, std::span(&form, 1)).front();
 }
 
 TEST(PowerErrors, OfOneFormAtOneNAreThePapersPlateauAtAThousandOnly) {
@@ -195,7 +199,7 @@ TEST(PowerTimes, AreOneForEachFormPrecisionAndCode) {
         // A microsecond a loop of two passes over 4096.
         EXPECT_NEAR(time.nanoseconds, 1000.0 / 4096 / 2, 1e-9) << time.form;
     }
-    EXPECT_EQ(seen.size(), (powerForms().size() + 1) * 2 * powerCodes().size());
+    EXPECT_EQ(seen.size(), (kPowerForms.size() + 1) * 2 * powerCodes().size());
 }
 
 TEST(PowerTimes, AreOfLoopsThatWorkTheSameValuesOut) {

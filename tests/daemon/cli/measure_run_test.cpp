@@ -1,9 +1,11 @@
 // Whole measurements as a user makes them: calibrate, measure, look, export, on the simulated rig.
 
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "tests/daemon/cli/lab_bench.h"
+#include "tests/support/data_file.h"
 
 namespace gonio {
 namespace {
@@ -152,6 +154,43 @@ TEST(MeasureRun, WithoutSystematicErrorsNoiseExplainsTheRest) {
     expectUsable(gonio, all.runs[1]);
     expectPlansHold(gonio);
     expectRecalibrates(gonio, all.runs[1]);
+}
+
+/// A published fit of a MERL material as the sample on the rig, and its parameters out of what was
+/// measured.
+TEST(MeasureRun, APublishedFitIsMeasuredAndFoundAgain) {
+    const auto file = test::dataFile("merl_model_fits/ngan_ward.fit");
+    if (!file) GTEST_SKIP();
+    const Bench gonio("[20, 320]");
+    gonio.calibrate("none", 3);
+    gonio({"sim", "place", "model:merl-fit,material=delrin,F=" + file->string()});
+    const Json measured = gonio({"measure", "delrin", "--effort", "draft"});
+    const Json scores = gonio({"sim", "score", measured["file"]})["samples"];
+    EXPECT_LE(scores[0]["median_relative_error"], 0.02) << scores;
+    const Json fits = gonio({"fit", "sample:delrin", "--models", "lambert+ward,lambert"});
+    EXPECT_EQ(fits["chosen"], "lambert+ward") << fits["verdict"];
+    const std::map<std::string, double> published{{"ward.alpha", 0.162},
+                                                  {"lambert.albedo_r", 0.293},
+                                                  {"lambert.albedo_g", 0.244},
+                                                  {"lambert.albedo_b", 0.146},
+                                                  {"ward.ks_r", 0.0348},
+                                                  {"ward.ks_g", 0.0295},
+                                                  {"ward.ks_b", 0.0202}};
+    std::size_t found = 0;
+    for (const Json& model : fits["models"]) {
+        if (model["model"] != "lambert+ward") continue;
+        for (const Json& p : model["parameters"]) {
+            const std::string band = p["band"].is_null() ? "" : "_" + p["band"].get<std::string>();
+            const double value = p["value"],
+                         truth = published.at(p["name"].get<std::string>() + band);
+            const double u =
+                std::hypot(p["u_random"].get<double>(), p["u_systematic"].get<double>());
+            EXPECT_NEAR(value, truth, 3 * u) << p;
+            EXPECT_LT(u, 0.03 * truth) << p;
+            ++found;
+        }
+    }
+    EXPECT_EQ(found, published.size());
 }
 
 TEST(MeasureRun, SameSeedGivesTheSameBytes) {

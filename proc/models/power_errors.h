@@ -1,6 +1,5 @@
 #pragma once
-// The forms of powers.h held against cos^n, and the study that proposed one of them, done again
-// [Zavalniuk2024]: its regression, its errors, its claims. Times are in power_timing.h.
+// The forms of powers.h held against cos^n.
 //
 // A form is evaluated at c and t of its own number type, and the truth is (1 - t)^n of these (c^n
 // where c <= 1/2) in extended precision: errors are the form's and its arithmetic's, not those of
@@ -9,40 +8,13 @@
 
 #include <functional>
 #include <span>
-#include <string>
-#include <string_view>
 #include <vector>
 
+#include "proc/core/units.h"
 #include "proc/models/analytic.h"
 #include "proc/models/powers.h"
 
 namespace gonio::proc {
-
-/// All of them, ours first.
-[[nodiscard]] std::span<const PowerForm> powerForms();
-[[nodiscard]] std::string_view name(PowerForm form);
-/// Proposed here, not in a paper nor by the library.
-[[nodiscard]] bool isOurs(PowerForm form);
-
-struct RegressionGrid {
-    int powers = 1000;  ///< n = 1, 2 .. powers
-    int angles = 1571;  ///< theta = 0, step .. step (angles - 1)
-    double thetaStep = 0.001;
-};
-
-/// a s^3 + b s^2 + c s + d, s Schlick's form, nearest to cos^n by least squares.
-struct SchlickRegression {
-    double a = 0;
-    double b = 0;
-    double c = 0;
-    double d = 0;
-    double rms = 0;
-    std::size_t rows = 0;
-};
-
-/// By orthogonal transformations, one n at a time: the sums of sixth powers that the paper inverts
-/// lose half of the digits. At least four rows.
-[[nodiscard]] SchlickRegression regressSchlick(const RegressionGrid& grid = {});
 
 /// How finely n and theta are sampled.
 struct PowerGrid {
@@ -60,7 +32,9 @@ struct PowerError {
     double epicentre = 0;  ///< largest |f - cos^n| / cos^n there
     double absolute = 0;   ///< largest |f - cos^n| over [0, pi / 2]
 };
-[[nodiscard]] PowerError powerError(PowerForm form, double n, const PowerGrid& grid = {});
+[[nodiscard]] std::vector<PowerError> powerErrorsAt(double n,
+                                                    std::span<const PowerForm> forms,
+                                                    const PowerGrid& grid = {});
 /// Largest relative error out to `theta`, in double.
 [[nodiscard]] double relativeErrorWithin(PowerForm form, double n, Radians theta);
 
@@ -83,22 +57,11 @@ struct PowerErrors {
 /// Told before each step: how many there will be, and how many are done.
 using StudyProgress = std::function<void(std::size_t done, std::size_t steps)>;
 
+/// n = 8, 9 .. 1000 by the grid's step, both ends included.
+[[nodiscard]] std::vector<double> publishedPowers(const PowerGrid& grid);
+
 /// All forms in both precisions, a step for each n.
 [[nodiscard]] std::vector<PowerErrors> powerErrors(const PowerGrid& grid,
                                                    const StudyProgress& progress = {});
-
-/// A figure of the paper and what it is here.
-struct PaperFigure {
-    std::string what;
-    std::string printed;
-    double here = 0;
-    bool reproduces = false;
-    std::string remark;
-};
-/// A figure reproduces where it is the same when rounded to the digits that were printed; "most n"
-/// where it is more than half of them.
-[[nodiscard]] std::vector<PaperFigure> paperFigures(const SchlickRegression& regression,
-                                                    const PowerGrid& grid,
-                                                    const StudyProgress& progress = {});
 
 }  // namespace gonio::proc

@@ -1,0 +1,97 @@
+// Rows of a measured sample: its present cells.
+
+#include <algorithm>
+#include <cmath>
+
+#include "proc/fit/data_maker.h"
+#include "proc/optics/cell_grid.h"
+#include "proc/solve/quadrature.h"
+
+namespace gonio::proc {
+namespace {
+
+bool usable(Flags flags) {
+    return flags.has(Flag::Measured) && !flags.has(Flag::Saturated) && !flags.has(Flag::Blocked) &&
+           !flags.has(Flag::BelowHorizon);
+}
+
+/// Gauss points per side of a cell, by its distance from the mirror direction.
+std::size_t nodesPerSide(Radians fromMirror) {
+    if (fromMirror < 3_deg) return 4;
+    if (fromMirror < 6_deg) return 3;
+    return fromMirror < 15_deg ? 2 : 1;
+}
+
+/// Weights by solid angle, summing to 1.
+std::vector<WeightedNode> nodesOf(const Direction& wi, std::size_t cell, std::size_t perSide) {
+    const auto pairTo = [&](const Direction& wo) { return pairOf<double>({.in = wi, .out = wo}); };
+    if (perSide == 1) return {{pairTo(CellGrid::centre(cell)), 1}};
+    const CellBounds bounds = CellGrid::bounds(cell);
+    const std::vector<QuadratureNode> rule = gaussLegendre(perSide);
+    const double theta = (bounds.thetaHigh - bounds.thetaLow).value();
+    const double phi = (bounds.phiHigh - bounds.phiLow).value();
+    std::vector<WeightedNode> nodes;
+    double sum = 0;
+    for (const QuadratureNode& a : rule) {
+        const Radians thetaO(bounds.thetaLow.value() + a.x * theta);
+        for (const QuadratureNode& b : rule) {
+            const Radians phiO(bounds.phiLow.value() + b.x * phi);
+            nodes.push_back({pairTo(Direction::fromSpherical(thetaO, phiO)),
+                             a.weight * b.weight * std::sin(thetaO.value())});
+            sum += nodes.back().weight;
+        }
+    }
+    for (WeightedNode& node : nodes) node.weight /= sum;
+    return nodes;
+}
+
+FitRow& addCell(DataMaker& maker, const Direction& wi, std::size_t cell) {
+    const Direction centre = CellGrid::centre(cell);
+    const Radians away = angleBetween({.in = mirrorOf(wi), .out = centre});
+    FitRow& row = maker.add(nodesOf(wi, cell, nodesPerSide(away)), centre.z());
+    row.cell = static_cast<std::int32_t>(cell);
+    row.patch = static_cast<std::uint32_t>(patchOf(cell));
+    row.solidAngle = CellGrid::solidAngle(cell);
+    return row;
+}
+
+/// The light at an incidence; the isotropic sample's is at phi = 0.
+Direction lightAt(Radians incidence) { return Direction::fromSpherical(incidence, Radians(0)); }
+
+}  // namespace
+
+BrdfData fitDataOf(const SampleSet& set, const DataOptions& options) {
+    DataMaker maker(options);
+    maker.data().shared = budgetShares(set);
+    for (std::size_t l = 0; l < set.leds.size(); ++l) {
+        const LedTable& led = set.leds[l];
+        const auto group = static_cast<std::uint16_t>(maker.data().incidences.size());
+        maker.data().incidences.push_back(led.incidence);
+        const Direction wi = lightAt(led.incidence);
+        for (std::size_t cell = 0; cell < CellGrid::count(); ++cell) {
+            const auto present = [&](const CellSamples& cells) {
+                return cell < cells.size() && usable(cells.flags[cell]);
+            };
+            if (std::none_of(led.bands.begin(), led.bands.end(), present)) {
+                maker.leaveOut();
+                continue;
+            }
+            FitRow& row = addCell(maker, wi, cell);
+            row.group = group;
+            for (std::size_t b = 0; b < 3; ++b) {
+                const CellSamples& cells = led.bands[b];
+                if (!present(cells)) continue;
+                row.f[b] = cells.f[cell];
+                row.uRandom[b] = cells.uRandom[cell];
+                const BudgetShare& share = maker.data().shared[l][b];
+                const double shared = row.f[b] * std::hypot(share.patch, share.state);
+                const double systematic = cells.uSystematic[cell];
+                row.uSystematic[b] =
+                    std::sqrt(std::max(0.0, systematic * systematic - shared * shared));
+            }
+        }
+    }
+    return std::move(maker).finished();
+}
+
+}  // namespace gonio::proc

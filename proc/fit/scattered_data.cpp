@@ -1,0 +1,162 @@
+// Rows of scattered values in the columns of a CSV.
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+
+#include "proc/core/number_text.h"
+#include "proc/fit/data_maker.h"
+
+namespace gonio::proc {
+namespace {
+
+/// Groups of scattered incidences: cut where two neighbours are more than half a degree apart;
+/// where that makes more than kMostGroups, neighbouring ones are joined, about as many rows to
+/// each.
+void groupByIncidence(BrdfData& data) {
+    constexpr std::size_t kMostGroups = 12;
+    const std::size_t count = data.rows.size();
+    std::vector<double> theta(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const Vec<double>& in = data.nodes[data.rows[i].firstNode].pair.in;
+        theta[i] = std::atan2(std::hypot(in.x, in.y), in.z);
+    }
+    std::vector<std::size_t> order(count);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return theta[a] < theta[b];
+    });
+    std::vector<std::size_t> begins;
+    for (std::size_t i = 0; i < count; ++i) {
+        const bool apart = i == 0 || theta[order[i]] - theta[order[i - 1]] > (0.5_deg).value();
+        if (apart) begins.push_back(i);
+    }
+    if (begins.size() > kMostGroups) {
+        std::vector<std::size_t> joined;
+        for (const std::size_t begin : begins) {
+            if (begin * kMostGroups >= joined.size() * count) joined.push_back(begin);
+        }
+        begins = std::move(joined);
+    }
+    for (std::size_t g = 0; g < begins.size(); ++g) {
+        const std::size_t end = g + 1 < begins.size() ? begins[g + 1] : count;
+        double sum = 0;
+        for (std::size_t i = begins[g]; i < end; ++i) {
+            data.rows[order[i]].group = static_cast<std::uint16_t>(g);
+            sum += theta[order[i]];
+        }
+        data.incidences.emplace_back(sum / static_cast<double>(end - begins[g]));
+    }
+}
+
+bool hasColumn(const Points& points, const std::string& name) {
+    return std::find(points.columns.begin(), points.columns.end(), name) != points.columns.end();
+}
+
+/// The columns NAME or NAME_r, NAME_g, NAME_b; empty where they are not there.
+Result<std::vector<std::vector<double>>> bandColumns(const Points& points,
+                                                     const std::string& name,
+                                                     BandCount bands) {
+    std::vector<std::string> names{name};
+    if (bands == BandCount::Three) names = {name + "_r", name + "_g", name + "_b"};
+    std::vector<std::vector<double>> columns;
+    for (const std::string& one : names) {
+        if (!hasColumn(points, one)) return std::vector<std::vector<double>>{};
+        Result<std::vector<double>> numbers = numbersOf(points, one);
+        if (!numbers) return numbers.error();
+        columns.push_back(std::move(*numbers));
+    }
+    return columns;
+}
+
+struct ScatteredColumns {
+    BandCount bands = BandCount::Three;
+    std::vector<std::vector<double>> f, uRandom, uSystematic;
+    std::vector<std::vector<bool>> out;  ///< by flags; one for all bands, or one each; or none
+
+    [[nodiscard]] bool isOut(std::size_t band, std::size_t row) const {
+        return !out.empty() && out[out.size() == 1 ? 0 : band][row];
+    }
+};
+
+/// Saturated, blocked or below the horizon, by a column of masks.
+Result<std::vector<bool>> flaggedOut(const Points& points, const std::string& column) {
+    const Result<std::vector<double>> masks = numbersOf(points, column);
+    if (!masks) return masks.error();
+    std::vector<bool> out;
+    for (std::size_t i = 0; i < masks->size(); ++i) {
+        const double mask = (*masks)[i];
+        const bool whole = mask >= 0 && mask < 1 << kFlagCount && mask == std::floor(mask);
+        if (!whole) {
+            return Error{ErrorKind::File,
+                         "csv: data row " + std::to_string(i + 1) + ": " + column + ": " +
+                             shortest(mask) + ", wanted a mask of " + std::to_string(kFlagCount) +
+                             " flags"};
+        }
+        const Flags flags = Flags::fromMask(static_cast<std::uint32_t>(mask));
+        out.push_back(flags.has(Flag::Saturated) || flags.has(Flag::Blocked) ||
+                      flags.has(Flag::BelowHorizon));
+    }
+    return out;
+}
+
+Result<ScatteredColumns> columnsOf(const Points& points) {
+    ScatteredColumns all;
+    all.bands = hasColumn(points, "f_r") ? BandCount::Three : BandCount::One;
+    const auto take = [&](const std::string& name, auto& into) -> Result<void> {
+        auto columns = bandColumns(points, name, all.bands);
+        if (!columns) return columns.error();
+        into = std::move(*columns);
+        return {};
+    };
+    if (auto done = take("f", all.f); !done) return done.error();
+    if (all.f.empty()) {
+        return Error{ErrorKind::File, "csv: no columns of values, wanted f or f_r,f_g,f_b"};
+    }
+    if (auto done = take("u_random", all.uRandom); !done) return done.error();
+    if (all.uRandom.empty()) {
+        if (auto done = take("u", all.uRandom); !done) return done.error();
+    } else if (auto done = take("u_systematic", all.uSystematic); !done) {
+        return done.error();
+    }
+    for (const char* name : {"flags", "flags_r", "flags_g", "flags_b"}) {
+        if (!hasColumn(points, name)) continue;
+        auto out = flaggedOut(points, name);
+        if (!out) return out.error();
+        all.out.push_back(std::move(*out));
+    }
+    if (all.out.size() > 1 && all.out.size() != all.f.size()) {
+        return Error{ErrorKind::File, "csv: wanted a column flags, or flags_r, flags_g, flags_b"};
+    }
+    return all;
+}
+
+}  // namespace
+
+Result<BrdfData> fitDataOf(const Points& points, const DataOptions& options) {
+    const Result<ScatteredColumns> columns = columnsOf(points);
+    if (!columns) return columns.error();
+    DataMaker maker(options);
+    maker.data().bands = columns->bands;
+    maker.data().uKnown = !columns->uRandom.empty();
+    for (std::size_t i = 0; i < points.pairs.size(); ++i) {
+        const LightView& pair = points.pairs[i];
+        const bool below = !pair.in.aboveHorizon() || !pair.out.aboveHorizon();
+        if (below) {
+            maker.leaveOut();
+            continue;
+        }
+        FitRow& row = maker.add(pair);
+        for (std::size_t b = 0; b < columns->f.size(); ++b) {
+            if (columns->isOut(b, i)) continue;
+            row.f[b] = columns->f[b][i];
+            if (!columns->uRandom.empty()) row.uRandom[b] = columns->uRandom[b][i];
+            if (!columns->uSystematic.empty()) row.uSystematic[b] = columns->uSystematic[b][i];
+        }
+    }
+    groupByIncidence(maker.data());
+    return std::move(maker).finished();
+}
+
+}  // namespace gonio::proc
