@@ -1,6 +1,8 @@
 #include "driver/protocol/pixels.h"
 
+#include <bit>
 #include <cassert>
+#include <cstring>
 
 namespace gonio::driver {
 namespace {
@@ -22,8 +24,23 @@ void packRow12(std::span<const std::uint16_t> row, std::uint8_t* out) {
     }
 }
 
+/// Four pixels of 12 bits, the first lowest, as four of 16.
+std::uint64_t spread12(std::uint64_t packed) {
+    return (packed & 0xFFFU) | (packed & 0xFFF000U) << 4 | (packed & 0xFFF000000U) << 8 |
+           (packed & 0xFFF000000000U) << 12;
+}
+
 void unpackRow12(const std::uint8_t* in, std::span<std::uint16_t> row) {
     std::size_t x = 0;
+    if constexpr (std::endian::native == std::endian::little) {
+        constexpr std::size_t kRead = 6;  // pixels that eight bytes reach into
+        for (; x + kRead <= row.size(); x += 4, in += 6) {
+            std::uint64_t packed = 0;
+            std::memcpy(&packed, in, sizeof packed);
+            const std::uint64_t four = spread12(packed);
+            std::memcpy(&row[x], &four, sizeof four);
+        }
+    }
     for (; x + 1 < row.size(); x += 2, in += 3) {
         row[x] = static_cast<std::uint16_t>(in[0] | (in[1] & 0xFU) << 8);
         row[x + 1] = static_cast<std::uint16_t>(in[1] >> 4 | in[2] << 4);

@@ -12,10 +12,14 @@ namespace {
 
 class Merger {
 public:
-    Merger(const BracketSums& sums, MergedState& out) : sums_(sums), out_(out) {
+    Merger(const BracketSums& sums, MergedState& out)
+        : sums_(sums),
+          bracket_{.electronsPerDn = sums.noise.electronsPerDn,
+                   .members = static_cast<double>(sums.members())},
+          out_(out) {
         for (const GroupSums& group : sums.groups) {
             figures_.push_back(figuresOf(group, sums));
-            frames_ += group.frames;
+            bracket_.frames += group.frames;
         }
     }
 
@@ -30,20 +34,14 @@ public:
 
 private:
     void merged(const BlockAt& at, std::vector<GroupBlock>& groups, BlockTotals& sum) const {
-        MergeBlock block;
-        for (std::size_t g = 0; g < groups.size(); ++g) {
-            readGroup(sums_, g, at, groups[g]);
-            pool(groups[g], figures_[g].tau, block);
-        }
-        const double k = sums_.noise.electronsPerDn;
-        findShot(k, sums_.members(), block);
-        for (std::size_t g = 0; g < groups.size(); ++g) weigh(groups[g], figures_[g], k, block);
-        const BlockTotals totals = conclude(frames_,
-                                            block,
-                                            {.radiance = at.of(out_.radiance),
-                                             .variance = at.of(out_.variance),
-                                             .used = at.of(out_.used),
-                                             .saturated = at.of(out_.saturated)});
+        for (std::size_t g = 0; g < groups.size(); ++g) readGroup(sums_, g, at, groups[g]);
+        const BlockTotals totals = mergeBlock(groups,
+                                              figures_,
+                                              bracket_,
+                                              {.radiance = at.of(out_.radiance),
+                                               .variance = at.of(out_.variance),
+                                               .used = at.of(out_.used),
+                                               .saturated = at.of(out_.saturated)});
         sum.chiSquare += totals.chiSquare;
         sum.freedom += totals.freedom;
         sum.unused += totals.unused;
@@ -51,7 +49,7 @@ private:
 
     const BracketSums& sums_;
     std::vector<GroupFigures> figures_;
-    int frames_ = 0;
+    BracketFigures bracket_;
     MergedState& out_;
 };
 

@@ -39,8 +39,6 @@ void addUsable(std::span<const std::uint16_t> row,
                std::span<const std::uint8_t> usable,
                std::span<std::uint32_t> tallies);
 
-inline constexpr BlockOfPixels kNoExcess{};
-
 /// One group's samples; nothing usable behind the end of the row.
 struct GroupBlock {
     BlockOfPixels count{};   ///< usable samples
@@ -73,21 +71,12 @@ struct GroupFigures {
     bool single = false;       ///< one frame: a pixel has one sample or none
 };
 
-/// The sums over the groups, pixel by pixel.
-struct MergeBlock {
-    BlockOfPixels net{}, count{}, tau{};  ///< of all usable samples
-    BlockOfPixels shot{};                 ///< variance of the pooled light, electrons^2 per second
-    BlockOfPixels w{}, wx{}, wxx{};
-    BlockOfPixels groups{};  ///< that have a usable sample
+/// What is alike in all groups.
+struct BracketFigures {
+    double electronsPerDn = 1;
+    double members = 1;  ///< sensor pixels of which a pixel is the mean
+    double frames = 0;   ///< samples of a pixel, usable or not
 };
-
-void pool(const GroupBlock& group, double tau, MergeBlock& block);
-/// `shot` from what was pooled; a pixel is the mean of `members` sensor pixels.
-void findShot(double electronsPerDn, double members, MergeBlock& block);
-void weigh(const GroupBlock& group,
-           const GroupFigures& figures,
-           double electronsPerDn,
-           MergeBlock& block);
 
 /// Where the results of a block go: at most kBlock pixels.
 struct MergedBlock {
@@ -100,7 +89,10 @@ struct BlockTotals {
     double freedom = 0;
     double unused = 0;  ///< pixels without a usable sample
 };
-/// NaN where nothing is usable. `frames`: samples per pixel, usable or not.
-BlockTotals conclude(double frames, const MergeBlock& block, const MergedBlock& out);
+/// The weighted mean over the groups, each with its figures; NaN where nothing is usable.
+BlockTotals mergeBlock(std::span<const GroupBlock> groups,
+                       std::span<const GroupFigures> figures,
+                       const BracketFigures& bracket,
+                       const MergedBlock& out);
 
 }  // namespace gonio::proc

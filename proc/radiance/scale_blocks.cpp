@@ -1,6 +1,7 @@
 #include "proc/radiance/scale_blocks.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace gonio::proc {
 
@@ -14,9 +15,10 @@ namespace gonio::proc {
     const std::size_t width = std::min(here.size() - 2, kBlock);
     for (std::size_t x = 0; x < width; ++x) {
         const float sum = here[x] + here[x + 2] + above[x + 1] + below[x + 1];
-        // Only a comparison for equality is quiet where there is no number.
-        const float known = sum == sum ? sum : 0;  // NOLINT(misc-redundant-expression)
-        light[x] = static_cast<double>(std::max(known, 0.0F)) / 4;
+        // By its bits: a comparison of floats is not quiet where there is no number.
+        constexpr std::int32_t kInfinite = 0x7F800000;
+        const auto bits = std::bit_cast<std::int32_t>(sum);
+        light[x] = bits > 0 && bits < kInfinite ? static_cast<double>(sum) / 4 : 0;
     }
 }
 
