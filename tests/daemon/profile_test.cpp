@@ -188,6 +188,22 @@ TEST(RigProfile, TheUsb3RigDiffersInItsCamera) {
     EXPECT_EQ(usb2->noise.fullScaleDn, usb3->noise.fullScaleDn);
 }
 
+TEST(RigProfile, RigsOfFewerBitsCountTheSameElectronsInLargerSteps) {
+    const auto twelve = readProfile(configDirectory() / "rigs" / "minidiff-usb2.toml");
+    ASSERT_TRUE(twelve) << twelve.error().message;
+    for (const int bits : {8, 10}) {
+        const std::string file = "minidiff-usb2-" + std::to_string(bits) + "bit.toml";
+        const auto fewer = readProfile(configDirectory() / "rigs" / file);
+        ASSERT_TRUE(fewer) << fewer.error().message;
+        EXPECT_EQ(fewer->noise.fullScaleDn, (1 << bits) - 1);
+        EXPECT_NEAR(fewer->noise.electronsPerDn * (1 << bits),
+                    twelve->noise.electronsPerDn * (1 << 12),
+                    1e-9);
+        EXPECT_EQ(fewer->noise.readNoiseElectrons, twelve->noise.readNoiseElectrons);
+        EXPECT_EQ(fewer->exposures, twelve->exposures);
+    }
+}
+
 TEST_F(Profile, WhiteWithoutATableIsAnOpenFallback) {
     const auto profile = read(without("white") + "\nwhite = \"1/pi\"\n");
     ASSERT_TRUE(profile) << profile.error().message;
