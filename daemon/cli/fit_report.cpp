@@ -92,7 +92,8 @@ Json modelJson(const proc::RankedFit& one, const proc::BrdfData& data) {
             {"evaluation_ns", orNull(one.nanoseconds)},
             {"pareto", one.pareto},
             {"rejected", one.rejected},
-            {"probability", one.probability}};
+            {"probability", orNull(one.probability)},
+            {"apart_in_u_systematic", orNull(one.apart)}};
 }
 
 std::string cell(std::optional<double> value) { return value ? perCent(*value) : ""; }
@@ -124,6 +125,7 @@ Json fitJson(const proc::Selection& selection, const proc::BrdfData& data) {
             {"chosen", named(selection.chosen)},
             {"best", named(selection.best)},
             {"gate", selection.gate},
+            {"misfit_in_u_systematic", orNull(selection.misfit)},
             {"worst", worst},
             {"verdict", selection.verdict}};
 }

@@ -30,7 +30,7 @@ BudgetShare shareOf(const Json& components) {
         const double relative = numberAt(one, "median_relative");
         const std::string correlation = textAt(one, "correlation");
         if (correlation == "per cell" && textAt(one, "type") == "B") {
-            share.patch = std::hypot(share.patch, relative);
+            share.patch = share.cell = std::hypot(share.patch, std::sqrt(0.5) * relative);
         }
         if (correlation == "per state") share.state = std::hypot(share.state, relative);
     }

@@ -5,8 +5,9 @@
 //
 // A component of type B that the budget draws anew for each cell (the white's certificate by
 // direction) is one whose correlation nobody stated. A tile does not change from one degree to the
-// next: its error is taken as alike over a patch of about 5 degrees and independent between
-// patches. Taken as noise of each cell it would vanish in the mean over a lobe.
+// next: half of its variance is taken as alike over a patch of about 5 degrees and independent
+// between patches, half as each cell's own. All as noise of the cells, it would vanish in the mean
+// over a lobe; all as the patches', what runs within one would count as misfit.
 
 #include <array>
 #include <vector>
@@ -16,6 +17,7 @@
 namespace gonio::proc {
 
 struct BudgetShare {
+    double cell = 0;   ///< of each cell alone
     double patch = 0;  ///< shared by the cells of one patch under one LED, in one band
     double state = 0;  ///< shared by one LED and band (the LED's drift)
 };

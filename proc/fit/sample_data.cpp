@@ -82,12 +82,12 @@ BrdfData fitDataOf(const SampleSet& set, const DataOptions& options) {
                 const CellSamples& cells = led.bands[b];
                 if (!present(cells)) continue;
                 row.f[b] = cells.f[cell];
-                row.uRandom[b] = cells.uRandom[cell];
                 const BudgetShare& share = maker.data().shared[l][b];
-                const double shared = row.f[b] * std::hypot(share.patch, share.state);
+                row.uRandom[b] = std::hypot(cells.uRandom[cell], share.cell * row.f[b]);
+                const double apart = row.f[b] * std::hypot(share.cell, share.patch, share.state);
                 const double systematic = cells.uSystematic[cell];
                 row.uSystematic[b] =
-                    std::sqrt(std::max(0.0, systematic * systematic - shared * shared));
+                    std::sqrt(std::max(0.0, systematic * systematic - apart * apart));
             }
         }
     }

@@ -88,11 +88,60 @@ std::vector<Misfit> worstRegions(const ModelFit& fit, const BrdfData& data) {
 
 double gateFor(double dof) { return std::max(kGate, 1 + 5 * std::sqrt(2 / std::max(dof, 1.0))); }
 
-/// A quarter of what even the best misfits beyond three standard deviations of noise: errors of the
-/// data that their uncertainties do not tell, by which one family may seem better than another.
-double unmodelled(const ModelFit& best) {
-    const double dof = best.degreesOfFreedom();
-    return 0.25 * std::max(0.0, best.chiSquare - dof - 3 * std::sqrt(2 * dof));
+/// The largest root mean square over a region of an incidence and band of what `squared` gives for
+/// a row and band.
+template <class Squared>
+double largestOfRegions(const BrdfData& data, Squared&& squared) {
+    struct Sum {
+        double squares = 0, count = 0;
+    };
+    std::vector<std::array<std::array<Sum, 3>, kRegions.size()>> sums(data.incidences.size());
+    for (const FitRow& row : data.rows) {
+        auto& ofRegion = sums[row.group][regionOf(data.nodes[row.firstNode].pair)];
+        const std::array<double, 3> all = squared(row);
+        for (std::size_t band = 0; band < data.bandsUsed(); ++band) {
+            if (!std::isfinite(row.f[band])) continue;
+            ofRegion[band].squares += all[band];
+            ofRegion[band].count += 1;
+        }
+    }
+    double largest = 0;
+    for (const auto& group : sums) {
+        for (const auto& region : group) {
+            for (const Sum& sum : region) {
+                if (sum.count > 0) largest = std::max(largest, sum.squares / sum.count);
+            }
+        }
+    }
+    return std::sqrt(largest);
+}
+
+/// RankedFit::apart.
+double apartInSystematic(const ModelFit& a, const ModelFit& b, const BrdfData& data) {
+    return largestOfRegions(data, [&](const FitRow& row) {
+        const LedBands fa = a.family->f(a.point, data.nodesOf(row));
+        const LedBands fb = b.family->f(b.point, data.nodesOf(row));
+        std::array<double, 3> all{};
+        for (std::size_t band = 0; band < data.bandsUsed(); ++band) {
+            const double off = fa.value[band] - fb.value[band];
+            if (off != 0) all[band] = squared(off / row.uSystematic[band]);
+        }
+        return all;
+    });
+}
+
+/// By how much the data differ from a fit beyond their other uncertainties, in the same units.
+double misfitInSystematic(const ModelFit& fit, const BrdfData& data) {
+    return largestOfRegions(data, [&](const FitRow& row) {
+        const LedBands f = fit.family->f(fit.point, data.nodesOf(row));
+        std::array<double, 3> all{};
+        for (std::size_t band = 0; band < data.bandsUsed(); ++band) {
+            const double beyond =
+                squared(row.f[band] - f.value[band]) - squared(data.uOf(row, band));
+            if (beyond != 0) all[band] = beyond / squared(row.uSystematic[band]);
+        }
+        return all;
+    });
 }
 
 /// At least as good in all three, better in one.
@@ -136,14 +185,17 @@ void judge(Selection& selection, const BrdfData& data) {
         if (!one.fit.usable()) continue;
         const double more = static_cast<double>(best.parameterCount()) -
                             static_cast<double>(one.fit.parameterCount());
-        const double worse = (one.fit.chiSquare - best.chiSquare - unmodelled(best)) / noise;
+        const double worse = (one.fit.chiSquare - best.chiSquare) / noise;
         one.probability = chiSquareTail(worse, std::max(1.0, more));
         one.rejected = !(one.probability >= kRejection);
+        one.apart = apartInSystematic(one.fit, best, data);
+        if (one.apart < 1) one.rejected = false;
     }
     const std::string against =
         data.uKnown ? "the noise"
                     : "an assumed uncertainty of " + perCent(data.assumedRelative) + " of f";
-    if (perDof > selection.gate) {
+    selection.misfit = misfitInSystematic(best, data);
+    if (perDof > selection.gate && !(selection.misfit < 1)) {
         const Misfit& where = selection.worst.front();
         selection.verdict = "none fits: the best, " + best.family->name() + ", misfits by " +
                             fixed(perDof, 2) + " times " + against + " squared (limit " +
@@ -162,7 +214,8 @@ void judge(Selection& selection, const BrdfData& data) {
         if (!selection.chosen || key(i) < key(*selection.chosen)) selection.chosen = i;
     }
     const ModelFit& chosen = ranked[*selection.chosen].fit;
-    selection.verdict = chosen.family->name() + " is the simplest that " + against +
+    selection.verdict = chosen.family->name() + " is the simplest that " +
+                        (data.uKnown ? "the uncertainties" : against) +
                         " cannot reject: chi-square per degree of freedom " +
                         fixed(chosen.chiSquarePerDof(), 3) + ", " +
                         std::to_string(chosen.parameterCount()) + " parameters";

@@ -2,14 +2,16 @@
 // Which of several families describes data. All are fitted; a family is rejected where the noise
 // cannot explain by how much it fits worse than the best: (chi-square difference) / s^2 beyond what
 // chi-square with max(1, difference in parameters) degrees of freedom exceeds once in 1000, s^2
-// being the best family's chi-square per degree of freedom, at least 1. Where even the best misfits
-// beyond three standard deviations, a quarter of that excess is not held against a rival: it comes
-// from errors that the uncertainties do not tell. Of those that are left the
-// one with the fewest parameters is named, of equals the one with the least chi-square.
+// being the best family's chi-square per degree of freedom, at least 1. Noise is not all that is
+// wrong with data: a family stays where it differs from the best by less than what the values have
+// as a common systematic uncertainty, root mean square in each region of each incidence and band.
+// (Common errors have shapes, such as that of a tilt, by which a richer family may seem better.) Of
+// those that are left the one with the fewest parameters is named, of equals the one with the least
+// chi-square.
 //
 // Where even the best misfits by more than the gate (chi-square per degree of freedom above 1.15,
-// and beyond five standard deviations of it), no family fits: nothing is named, and the evidence
-// says by how much and where.
+// and beyond five standard deviations of it), and in some region by more than the common systematic
+// uncertainty, no family fits: nothing is named, and the evidence says by how much and where.
 
 #include <functional>
 
@@ -23,6 +25,9 @@ struct RankedFit {
     bool pareto = false;     ///< no other is at least as good in error, parameters and time
     bool rejected = true;    ///< by the noise, against the best
     double probability = 0;  ///< that noise makes it as much worse than the best as it is
+    /// Largest distance from the best in units of the common systematic uncertainty, root mean
+    /// square over a region of an incidence and band; infinite where there is no such uncertainty.
+    double apart = 0;
 
     /// What is ranked by: the held-out error, infinite where there is none; where no fit has one,
     /// the rms of what is left.
@@ -45,8 +50,11 @@ struct Selection {
     std::optional<std::size_t> chosen;  ///< index into `ranked`
     std::optional<std::size_t> best;    ///< by chi-square
     double gate = 1.15;                 ///< of chi-square per degree of freedom
-    std::vector<Misfit> worst;          ///< regions of the best fit, the worst first
-    std::string verdict;                ///< one sentence with the evidence
+    /// Of the best fit beyond noise, in units of the common systematic uncertainty, as
+    /// RankedFit::apart; infinite where there is none.
+    double misfit = 0;
+    std::vector<Misfit> worst;  ///< regions of the best fit, the worst first
+    std::string verdict;        ///< one sentence with the evidence
 };
 
 struct SelectionOptions {

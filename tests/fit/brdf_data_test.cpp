@@ -164,9 +164,10 @@ TEST(BrdfData, ABudgetSplitsTheSystematicUncertainty) {
     for (const FitRow& row : data.rows) {
         const bool listed = row.group == 1;
         const BudgetShare share = data.shareOf(row, 0);
-        EXPECT_NEAR(row.uRandom[0], 0.2 * 0.01, 1e-12);
+        const double half = std::sqrt(0.5) * 0.003;
+        EXPECT_NEAR(row.uRandom[0], 0.2 * (listed ? std::hypot(0.01, half) : 0.01), 1e-12);
         EXPECT_NEAR(share.state, listed ? 0.004 : 0, 1e-12);
-        EXPECT_NEAR(share.patch, listed ? 0.003 : 0, 1e-12);
+        EXPECT_NEAR(share.patch, listed ? half : 0, 1e-12);
         const double u = data.uOf(row, 0);
         EXPECT_NEAR(std::hypot(row.uSystematic[0], u), 0.2 * std::hypot(0.01, 0.02), 1e-12);
         EXPECT_EQ(data.shareOf(row, 1).state, 0);

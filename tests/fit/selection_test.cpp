@@ -187,6 +187,41 @@ TEST(Selection, RanksByErrorAndMarksTheParetoFront) {
     EXPECT_EQ(selection.ranked[*selection.chosen].fit.family->name(), "lambert+ggx");
 }
 
+/// A white of 0.5 % and a seat of 0.25 degree, as budgets have them.
+void budgetTilt(BrdfData& data) {
+    for (FitRow& row : data.rows) {
+        const Vec<double>& wo = data.nodesOf(row).front().pair.out;
+        const double tilt = 0.25 * kPi / 180 * std::hypot(wo.x, wo.y) / wo.z;
+        for (std::size_t b = 0; b < 3; ++b) row.uSystematic[b] = std::hypot(0.005, tilt) * row.f[b];
+    }
+}
+
+/// A tilt of 0.1 degree, in the budget as 0.25 degree, makes a matt sample seem glossy to noise of
+/// 0.1 %. Without that uncertainty lambert is rejected; with it nothing else can be told.
+TEST(Selection, WhatSystematicUncertaintyHidesRejectsNoFamily) {
+    const auto surface = makeModel("lambert,albedo=0.3/0.2/0.1");
+    const auto truth = test::simulated(**surface, 400, {.relative = 1e-3, .floor = 1e-6});
+    BrdfData data = test::noisy(truth, 6);
+    for (FitRow& row : data.rows) {
+        const Vec<double>& wo = data.nodesOf(row).front().pair.out;
+        for (double& f : row.f) f *= 1 + 0.1 * kPi / 180 * wo.x / wo.z;
+    }
+    const auto list = familiesNamed("lambert,oren-nayar,phong,lambert+ggx");
+    const Selection sharp = selectModel(*list, data, quick());
+    EXPECT_TRUE(!sharp.chosen || sharp.ranked[*sharp.chosen].fit.family->name() != "lambert");
+    budgetTilt(data);
+    const Selection honest = selectModel(*list, data, quick());
+    ASSERT_TRUE(honest.chosen) << honest.verdict;
+    EXPECT_EQ(honest.ranked[*honest.chosen].fit.family->name(), "lambert") << honest.verdict;
+    // It hides no lobe.
+    const auto glossy = makeModel("lambert,albedo=0.3/0.2/0.1+ggx,alpha=0.3,f0=0.04");
+    BrdfData shiny = test::noisy(test::simulated(**glossy, 400), 7);
+    budgetTilt(shiny);
+    const Selection told = selectModel(*list, shiny, quick());
+    ASSERT_TRUE(told.chosen) << told.verdict;
+    EXPECT_EQ(told.ranked[*told.chosen].fit.family->name(), "lambert+ggx") << told.verdict;
+}
+
 TEST(Selection, NothingFittedIsSaidSo) {
     const BrdfData nothing;
     const Selection selection = selectModel(tenFamilies(), nothing);
