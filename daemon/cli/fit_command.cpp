@@ -58,10 +58,12 @@ Result<void> readRobust(const std::string& text, proc::ModelFitOptions& options)
 Result<proc::BrdfData> checked(Result<proc::BrdfData> data, const std::string& file) {
     if (!data) return data.error().in("'" + file + "'");
     if (data->valueCount() > 0) return data;
-    return Error{ErrorKind::File,
-                 "fit: '" + file + "': no value can be fitted: directions left out, as missing, "
-                     "flagged, below the horizon or without a positive uncertainty: " +
-                     std::to_string(data->leftOut) + " of " + std::to_string(data->leftOut)};
+    const std::string why =
+        data->leftOut == 0 ? "it has no rows"
+                           : "all " + std::to_string(data->leftOut) +
+                                 " directions are missing, flagged, below the horizon or without "
+                                 "a positive uncertainty";
+    return Error{ErrorKind::File, "fit: '" + file + "': no value can be fitted: " + why};
 }
 
 Result<proc::BrdfData> dataOf(const CommonOptions& common, const FitOptions& options) {

@@ -92,8 +92,8 @@ Json modelJson(const proc::RankedFit& one, const proc::BrdfData& data) {
             {"evaluation_ns", orNull(one.nanoseconds)},
             {"pareto", one.pareto},
             {"rejected", one.rejected},
-            {"probability", orNull(one.probability)},
-            {"apart_in_u_systematic", orNull(one.apart)}};
+            {"probability", ifUsable(one.probability)},
+            {"apart_in_u_systematic", ifUsable(one.apart)}};
 }
 
 std::string cell(std::optional<double> value) { return value ? perCent(*value) : ""; }

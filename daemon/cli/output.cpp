@@ -44,7 +44,8 @@ Result<void> makeOutputFolder(const std::filesystem::path& folder) {
     if (folder.empty()) return {};
     std::error_code failed;
     std::filesystem::create_directories(folder, failed);
-    if (std::filesystem::is_directory(folder)) return {};
+    std::error_code ignored;
+    if (std::filesystem::is_directory(folder, ignored)) return {};
     return Error{ErrorKind::File,
                  folder.string() + ": wanted a folder to write to" +
                      (failed ? ", " + failed.message() : "")};

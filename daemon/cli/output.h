@@ -1,5 +1,6 @@
 #pragma once
-// How the commands print on stdout: JSON for machines, tables for people.
+// What the commands have in common in how they answer: JSON for machines, tables for people, and
+// the folder that files go to.
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>

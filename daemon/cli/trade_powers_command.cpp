@@ -16,7 +16,6 @@
 namespace gonio::daemon {
 namespace {
 
-namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 using Rows = std::vector<std::vector<std::string>>;
 
@@ -243,7 +242,6 @@ Json toJson(const PowerStudy& all, const Json& files) {
     return json;
 }
 
-/// Before anything is measured: the folder, made where it is missing.
 }  // namespace
 
 Result<void> tradePowers(const CommonOptions& common, const TradePowersOptions& options) {

@@ -64,7 +64,8 @@ std::size_t patchOf(std::size_t cell) {
     const int middle = ring * kPatchDegrees + kPatchDegrees / 2;
     const int patches = CellGrid::sectors(middle) / kPatchDegrees;
     const int within = place.sector * patches / CellGrid::sectors(place.row);
-    return static_cast<std::size_t>(ring * (360 / kPatchDegrees) + within);
+    constexpr std::size_t kMostInRing = 360 / kPatchDegrees;
+    return static_cast<std::size_t>(ring) * kMostInRing + static_cast<std::size_t>(within);
 }
 
 }  // namespace gonio::proc

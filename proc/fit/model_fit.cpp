@@ -123,6 +123,11 @@ void fillUncertainties(const FitSums& sums,
     }
     // Of a fit without the shared errors: with them an LED's offset would take up what is common.
     const auto curvature = spread.curvature(free, free).eval().ldlt();
+    if (!curvature.isPositive() || !(curvature.rcond() > 1e-14)) {
+        fit.warnings.emplace_back(
+            "too few values lie within the robust loss' scale: no covariance can be given");
+        return;
+    }
     Eigen::VectorXd slope(static_cast<Index>(free.size()));
     for (std::size_t i = 0; i < free.size(); ++i) {
         const auto place = static_cast<std::size_t>(free[i]);
@@ -260,7 +265,8 @@ std::optional<double> rmsOf(const ModelFit& fit, double HeldOut::*member) {
     return std::sqrt(sum / static_cast<double>(fit.heldOut.size()));
 }
 
-/// -2 ln of the likelihood, but for a constant.
+/// -2 ln of the likelihood, but for what is nearly alike in all families: the determinant of the
+/// covariance, in which errors are shared about each one's own model.
 double deviance(const ModelFit& fit) {
     const auto n = static_cast<double>(fit.values);
     return fit.uKnown ? fit.chiSquare : n * std::log(fit.chiSquare / n);

@@ -11,7 +11,8 @@
 // curvature H = sum w (rho' + 2 r^2 rho'') j j^T and N = sum (w rho')^2 j j^T, times r^2 each under
 // a robust loss (White's), plus what values share; scaled by chi-square per degree of freedom where
 // the uncertainties of the data were assumed and the loss is plain. The change of the parameters
-// when all values of a band shift by their systematic uncertainty together, bands independent.
+// when all values of a band shift by their systematic uncertainty together, bands independent, as
+// the fit without shared errors would take it.
 // Warnings where the data do not tell parameters apart. Chi-square is always that of f against u,
 // whatever the weights of the fit; where u was assumed, the information criteria are those of an
 // unknown variance, N ln(chi-square / N) in place of chi-square.

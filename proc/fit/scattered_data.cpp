@@ -120,14 +120,24 @@ Result<ScatteredColumns> columnsOf(const Points& points) {
     } else if (auto done = take("u_systematic", all.uSystematic); !done) {
         return done.error();
     }
+    std::vector<std::string> flags;
     for (const char* name : {"flags", "flags_r", "flags_g", "flags_b"}) {
-        if (!hasColumn(points, name)) continue;
+        if (hasColumn(points, name)) flags.emplace_back(name);
+    }
+    const bool ofAll = flags.size() == 1 && flags.front() == "flags";
+    const bool ofEach = flags.size() == 3 && flags.front() == "flags_r" && all.f.size() == 3;
+    if (!flags.empty() && !ofAll && !ofEach) {
+        std::string found;
+        for (const std::string& name : flags) found += (found.empty() ? "" : ", ") + name;
+        return Error{ErrorKind::File,
+                     "csv: columns " + found +
+                         "; wanted flags alone, or flags_r, flags_g, "
+                         "flags_b beside f_r, f_g, f_b"};
+    }
+    for (const std::string& name : flags) {
         auto out = flaggedOut(points, name);
         if (!out) return out.error();
         all.out.push_back(std::move(*out));
-    }
-    if (all.out.size() > 1 && all.out.size() != all.f.size()) {
-        return Error{ErrorKind::File, "csv: wanted a column flags, or flags_r, flags_g, flags_b"};
     }
     return all;
 }

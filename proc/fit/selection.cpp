@@ -88,28 +88,35 @@ std::vector<Misfit> worstRegions(const ModelFit& fit, const BrdfData& data) {
 
 double gateFor(double dof) { return std::max(kGate, 1 + 5 * std::sqrt(2 / std::max(dof, 1.0))); }
 
-/// The largest root mean square over a region of an incidence and band of what `squared` gives for
-/// a row and band.
-template <class Squared>
-double largestOfRegions(const BrdfData& data, Squared&& squared) {
-    struct Sum {
-        double squares = 0, count = 0;
-    };
-    std::vector<std::array<std::array<Sum, 3>, kRegions.size()>> sums(data.incidences.size());
+/// What a row and band give to the comparison of a distance with the systematic uncertainty.
+struct DistanceSquared {
+    double distance = 0;  ///< may be below 0 where noise is taken off
+    double u = 0;
+};
+
+/// The largest root, over the regions of each incidence and band, of the mean square distance over
+/// the mean square uncertainty; infinite where there is a distance and no uncertainty.
+template <class Squares>
+double largestOfRegions(const BrdfData& data, Squares&& squares) {
+    std::vector<std::array<std::array<DistanceSquared, 3>, kRegions.size()>> sums(
+        data.incidences.size());
     for (const FitRow& row : data.rows) {
         auto& ofRegion = sums[row.group][regionOf(data.nodes[row.firstNode].pair)];
-        const std::array<double, 3> all = squared(row);
+        const std::array<double, 3> all = squares(row);
         for (std::size_t band = 0; band < data.bandsUsed(); ++band) {
             if (!std::isfinite(row.f[band])) continue;
-            ofRegion[band].squares += all[band];
-            ofRegion[band].count += 1;
+            ofRegion[band].distance += all[band];
+            ofRegion[band].u += squared(row.uSystematic[band]);
         }
     }
     double largest = 0;
     for (const auto& group : sums) {
         for (const auto& region : group) {
-            for (const Sum& sum : region) {
-                if (sum.count > 0) largest = std::max(largest, sum.squares / sum.count);
+            for (const DistanceSquared& sum : region) {
+                if (!(sum.distance > 0)) continue;
+                largest = std::max(
+                    largest,
+                    sum.u > 0 ? sum.distance / sum.u : std::numeric_limits<double>::infinity());
             }
         }
     }
@@ -123,8 +130,7 @@ double apartInSystematic(const ModelFit& a, const ModelFit& b, const BrdfData& d
         const LedBands fb = b.family->f(b.point, data.nodesOf(row));
         std::array<double, 3> all{};
         for (std::size_t band = 0; band < data.bandsUsed(); ++band) {
-            const double off = fa.value[band] - fb.value[band];
-            if (off != 0) all[band] = squared(off / row.uSystematic[band]);
+            all[band] = squared(fa.value[band] - fb.value[band]);
         }
         return all;
     });
@@ -136,9 +142,7 @@ double misfitInSystematic(const ModelFit& fit, const BrdfData& data) {
         const LedBands f = fit.family->f(fit.point, data.nodesOf(row));
         std::array<double, 3> all{};
         for (std::size_t band = 0; band < data.bandsUsed(); ++band) {
-            const double beyond =
-                squared(row.f[band] - f.value[band]) - squared(data.uOf(row, band));
-            if (beyond != 0) all[band] = beyond / squared(row.uSystematic[band]);
+            all[band] = squared(row.f[band] - f.value[band]) - squared(data.uOf(row, band));
         }
         return all;
     });

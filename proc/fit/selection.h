@@ -23,10 +23,11 @@ struct RankedFit {
     ModelFit fit;
     std::optional<double> nanoseconds;  ///< per evaluation, where the caller measured it
     bool pareto = false;     ///< no other is at least as good in error, parameters and time
-    bool rejected = true;    ///< by the noise, against the best
+    bool rejected = true;    ///< against the best
     double probability = 0;  ///< that noise makes it as much worse than the best as it is
-    /// Largest distance from the best in units of the common systematic uncertainty, root mean
-    /// square over a region of an incidence and band; infinite where there is no such uncertainty.
+    /// Largest distance from the best in units of the common systematic uncertainty, both as root
+    /// mean squares over a region of an incidence and band; infinite where there is no such
+    /// uncertainty.
     double apart = 0;
 
     /// What is ranked by: the held-out error, infinite where there is none; where no fit has one,

@@ -7,9 +7,10 @@
 // is measured as f at (wi, wo) is
 //     f'(wi, wo) = f(R^T wi, R^T wo) (R^T wo).z / wo.z,
 // as the lit spot lies within the aperture's view. n is fitted jointly to all LEDs, with f a
-// Lambert floor and one GGX lobe [Walter2007] common to them; where a real lobe is none, the misfit
-// widens the uncertainty. Each LED's own normal is then fitted with that lobe held: on a wavy
-// surface they disagree by more than noise explains.
+// Lambert floor and one lobe common to them, of GGX's facets or of Beckmann's [Walter2007],
+// whichever fits better; where a real lobe is neither, the misfit widens the uncertainty. Each
+// LED's own normal is then fitted with that lobe held: on a wavy surface they disagree by more than
+// noise explains.
 //
 // A matt sample shows no lobe, and its tilt does no harm: no answer. Where there is a lobe and its
 // fit leaves the normal open by more than half a degree, that is the answer:
@@ -26,9 +27,15 @@
 
 namespace gonio::proc {
 
+enum class Facets {
+    Ggx,
+    Beckmann
+};
+
 /// What one LED sees of the surface that the normal is fitted with: diffuse / pi + specular D V F,
 /// both the mean of the bands, F by Schlick with f0.
 struct TiltLobe {
+    Facets facets = Facets::Ggx;
     double diffuse = 0;
     double specular = 1;
     double alpha = 0.1;

@@ -236,18 +236,19 @@ bool NormalSums::finite() const {
 NormalFit fitNormal(const NormalProblem& problem) {
     NormalFit fit = poisoned(problem);
     const std::size_t n = problem.start.size();
-    if (n == 0 || problem.residualCount < n) {
+    std::vector<bool> held(n, false);
+    for (std::size_t i = 0; i < n; ++i) held[i] = problem.lower[i] == problem.upper[i];
+    const auto free = static_cast<std::size_t>(std::count(held.begin(), held.end(), false));
+    if (free == 0 || problem.residualCount < free) {
         return failed(std::move(fit),
                       FitStatus::TooFewData,
                       std::to_string(problem.residualCount) + " residuals for " +
-                          std::to_string(n) + " parameters");
+                          std::to_string(free) + " parameters");
     }
     std::vector<double> at = problem.start;
     for (std::size_t i = 0; i < n; ++i) {
         at[i] = std::clamp(at[i], problem.lower[i], problem.upper[i]);
     }
-    std::vector<bool> held(n, false);
-    for (std::size_t i = 0; i < n; ++i) held[i] = problem.lower[i] == problem.upper[i];
     if (!FreePart(problem, at, held).sums(at.data(), Wanted::Derivatives)) {
         return failed(std::move(fit), FitStatus::BadStart, "no finite sums at the start");
     }

@@ -196,12 +196,28 @@ TEST_F(SharedErrors, AreInTheUncertaintiesAndNotInChiSquare) {
     for (const int count : alone.held) EXPECT_LT(count, CoverageOfFour::kFewest);
 }
 
-TEST_F(SharedErrors, AreInTheUncertaintiesOfOtherWeights) {
+TEST_F(SharedErrors, AreInTheUncertaintiesOfOtherWeightsAndLosses) {
+    const auto draw = [this](std::uint64_t seed) { return drawn(seed); };
+    ModelFitOptions cosine = withoutHeldOut();
+    cosine.weights = {.uncertainty = true, .cosine = true};
+    coverage(cosine, draw).expectTrue();
+    ModelFitOptions robust = withoutHeldOut();
+    robust.loss = RobustLoss::Huber;
+    coverage(robust, draw).expectTrue();
+}
+
+/// Values that are off by far more than they say are all beyond the loss' scale.
+TEST(ModelFit, ARobustLossWithNothingWithinItsScaleGivesNoUncertainty) {
+    BrdfData data = test::noisy(dataOf("lambert,albedo=0.3", 250), 3);
+    for (FitRow& row : data.rows) {
+        for (double& u : row.uRandom) u = 1e-9;
+    }
     ModelFitOptions options = withoutHeldOut();
-    options.weights = {.uncertainty = true, .cosine = true};
-    const CoverageOfFour all =
-        coverage(options, [this](std::uint64_t seed) { return drawn(seed); });
-    all.expectTrue();
+    options.loss = RobustLoss::Huber;
+    const ModelFit fit = fitModel(family("lambert"), data, options);
+    EXPECT_NEAR(fit.parameters[0].value, 0.3, 0.003);
+    EXPECT_TRUE(std::isnan(fit.parameters[0].uRandom));
+    EXPECT_FALSE(fit.warnings.empty());
 }
 
 /// r^T C^-1 r by the covariance written out and factorised.
@@ -316,9 +332,12 @@ TEST(ModelFit, AnAssumedUncertaintyIsScaledByTheMisfit) {
 
 /// All values of a band shift together: the albedo follows, by as much, with any weights.
 TEST(ModelFit, SystematicUncertaintyIsTheShiftThatItCauses) {
-    BrdfData data = dataOf("lambert,albedo=0.3/0.2/0.1", 250);
-    for (FitRow& row : data.rows) {
-        for (std::size_t b = 0; b < 3; ++b) row.uSystematic[b] = 0.01 * row.f[b];
+    const BrdfData truth = dataOf("lambert,albedo=0.3/0.2/0.1", 250);
+    BrdfData data = test::noisy(truth, 8);
+    for (std::size_t i = 0; i < data.rows.size(); ++i) {
+        for (std::size_t b = 0; b < 3; ++b) {
+            data.rows[i].uSystematic[b] = 0.01 * truth.rows[i].f[b];
+        }
     }
     for (const RobustLoss loss : {RobustLoss::None, RobustLoss::Huber, RobustLoss::Cauchy}) {
         for (const bool cosine : {false, true}) {
@@ -328,8 +347,8 @@ TEST(ModelFit, SystematicUncertaintyIsTheShiftThatItCauses) {
             options.weights.cosine = cosine;
             const ModelFit fit = fitModel(family("lambert"), data, options);
             ASSERT_TRUE(fit.usable());
-            EXPECT_NEAR(fit.parameters[0].uSystematic, 0.003, 3e-6);
-            EXPECT_NEAR(fit.parameters[2].uSystematic, 0.001, 1e-6);
+            EXPECT_NEAR(fit.parameters[0].uSystematic, 0.003, 1e-5);
+            EXPECT_NEAR(fit.parameters[2].uSystematic, 0.001, 1e-5);
         }
     }
 }
@@ -399,12 +418,14 @@ TEST(ModelFit, NamesTheBoundThatHoldsAParameter) {
     ASSERT_TRUE(fit.usable()) << fit.message;
     EXPECT_NEAR(valueOf(fit, "kd", Band::G), 0.3, 1e-4);
     EXPECT_LT(valueOf(fit, "ks", Band::G), 1e-4);
-    ASSERT_FALSE(fit.warnings.empty());  // no lobe: its exponent is free
-    const auto held = std::count_if(fit.parameters.begin(), fit.parameters.end(), [](auto& p) {
-        return p.name == "ks" && p.atLower;
-    });
+    // No lobe: its strength is at its bound, or its exponent is free.
     const bool free = fit.status == FitStatus::Singular;
-    EXPECT_TRUE(held > 0 || free) << fit.message;
+    bool named = false;
+    for (const std::string& warning : fit.warnings) {
+        named |= warning.find("ks_") == 0 && warning.find("held by its lower bound 0") > 0;
+        named |= free && warning.find("do not tell all parameters apart") != std::string::npos;
+    }
+    EXPECT_TRUE(named) << fit.message;
 }
 
 TEST(ModelFit, HoldsOutEachIncidence) {

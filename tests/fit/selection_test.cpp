@@ -187,6 +187,18 @@ TEST(Selection, RanksByErrorAndMarksTheParetoFront) {
     EXPECT_EQ(selection.ranked[*selection.chosen].fit.family->name(), "lambert+ggx");
 }
 
+/// Uncertainties half of the scatter: chi-square 4, and no systematic uncertainty to hide it.
+TEST(Selection, AMisfitWithoutSystematicUncertaintyFitsNone) {
+    const auto surface = makeModel("lambert,albedo=0.3/0.2/0.1+ggx,alpha=0.2,f0=0.05");
+    BrdfData data = test::noisy(test::simulated(**surface, 400), 4);
+    for (FitRow& row : data.rows) {
+        for (double& u : row.uRandom) u /= 2;
+    }
+    const Selection selection = selectModel(tenFamilies(), data, quick());
+    EXPECT_FALSE(selection.chosen) << selection.verdict;
+    EXPECT_GT(selection.misfit, 1);
+}
+
 /// A white of 0.5 % and a seat of 0.25 degree, as budgets have them.
 void budgetTilt(BrdfData& data) {
     for (FitRow& row : data.rows) {

@@ -1,5 +1,6 @@
 // Commands that need no rig: what the models err by and cost, and their fit to a file of values.
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>

@@ -107,6 +107,7 @@ TEST(SelectionRun, NamesTheFamilyOfCapturesInSeveralLaboratories) {
     std::cout << named << " of " << samples << " named, " << all.within2u << " of " << all.all
               << " parameters within 2 u\n";
     EXPECT_GE(named, 0.9 * samples);
+    EXPECT_GE(all.all, 2 * samples);
     EXPECT_GE(all.within2u, 0.9 * all.all);
 }
 
