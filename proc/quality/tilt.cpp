@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <span>
 
-#include "proc/models/beckmann.h"
 #include "proc/models/ggx.h"
 #include "proc/optics/cell_grid.h"
 #include "proc/quality/cell_points.h"
@@ -33,8 +33,6 @@ constexpr double kGoodFit = 0.1;  // of what a lobe may be off: no other is look
 // There is a lobe where it explains so much of chi-square.
 constexpr double kLobeChiSquare = 50, kLobeGain = 1.05;
 constexpr double kLeastShare = 0.3;  // of f in the mirror direction, under half of the LEDs
-// Of a normal, rad: a tenth of a degree, half of what makes a sample wavy.
-constexpr double kShapeMatters = 0.0017;
 // A narrower lobe is another in the middle of a cell than over all of it, by more than 1 %.
 constexpr double kNarrowLobe = 0.06;
 
@@ -58,29 +56,19 @@ struct Parts {
 };
 
 struct Shape {
-    Facets facets = Facets::Ggx;
     double alpha = 0.1, f0 = 0.04;
 };
-Shape shapeOf(const TiltLobe& lobe) { return {lobe.facets, lobe.alpha, lobe.f0}; }
-
-/// D V F in the surface's frame.
-double lobeOf(const Shape& shape, const Pair<double>& own) {
-    const auto alpha = Alpha<double>::isotropic(shape.alpha);
-    const SurfaceFresnel<double> fresnel{
-        .form = FresnelForm::Schlick, .f0 = Bands<double>::all(shape.f0), .eta = {}, .k = {}};
-    constexpr Effort kEffort = Effort::Draft;  // masking to 1e-3: far less than a lobe is off by
-    if (shape.facets == Facets::Beckmann) {
-        return Beckmann<double>{.alpha = alpha, .fresnel = fresnel}.f<kEffort>(own).g;
-    }
-    return Ggx<double>{.alpha = alpha, .fresnel = fresnel}.f<kEffort>(own).g;
-}
 
 Parts partsOf(const Shape& shape, const Eigen::Matrix3d& turn, const LightView& pair) {
     const Eigen::Vector3d wi = turn * pair.in.vector(), wo = turn * pair.out.vector();
     if (wi.z() <= 0 || wo.z() <= 0) return {};
+    const auto alpha = Alpha<double>::isotropic(shape.alpha);
     const Pair<double> own{{wi.x(), wi.y(), wi.z()}, {wo.x(), wo.y(), wo.z()}};
+    const Half<double> half(own);
     const double view = wo.z() / pair.out.z();
-    return {view / kPi, view * lobeOf(shape, own)};
+    return {view / kPi,
+            view * ggxD(half, alpha) * ggxV(own, alpha, Masking::HeightCorrelated) *
+                schlick(shape.f0, 1.0, half.cosDiff)};
 }
 
 std::optional<Sighting> sightingAt(const LedTable& led, std::size_t cell) {
@@ -178,8 +166,7 @@ TiltLobe strengths(std::span<const Sighting> sightings,
         right += row * (one.f / one.sigma);
     }
     const Eigen::Vector2d found = normal.completeOrthogonalDecomposition().solve(right);
-    return {.facets = shape.facets,
-            .diffuse = std::max(0.0, found[0]),
+    return {.diffuse = std::max(0.0, found[0]),
             .specular = std::max(0.0, found[1]),
             .alpha = shape.alpha,
             .f0 = shape.f0};
@@ -196,7 +183,7 @@ double shownBy(const TiltLobe& lobe, const Parts& parts) {
 }
 
 double shownBy(const TiltLobe& lobe, const Eigen::Matrix3d& turn, const LightView& pair) {
-    return shownBy(lobe, partsOf(shapeOf(lobe), turn, pair));
+    return shownBy(lobe, partsOf({lobe.alpha, lobe.f0}, turn, pair));
 }
 
 /// (measured - fitted) over what that may be, of one LED.
@@ -212,9 +199,7 @@ void residualsOf(std::span<const Sighting> sightings,
 }
 
 /// Parameters of the joint fit: n.x / n.z, n.y / n.z, ln alpha, ln f0.
-Shape shapeOf(Facets facets, std::span<const double> p) {
-    return {facets, std::exp(p[2]), std::exp(p[3])};
-}
+Shape shapeOf(std::span<const double> p) { return {std::exp(p[2]), std::exp(p[3])}; }
 
 constexpr double kNarrowest = 1e-3, kDimmest = 1e-3;
 
@@ -235,9 +220,9 @@ void residualsOf(const std::vector<Sightings>& leds,
     }
 }
 
-FitReport fitJoint(const std::vector<Sightings>& leds, Facets facets, double alpha) {
+FitReport fitJoint(const std::vector<Sightings>& leds, double alpha) {
     const auto residuals = [&](std::span<const double> p, std::span<double> out) {
-        residualsOf(leds, shapeOf(facets, p), normalOf(p[0], p[1]), out);
+        residualsOf(leds, shapeOf(p), normalOf(p[0], p[1]), out);
         return true;
     };
     return fit({.residuals = residuals,
@@ -250,12 +235,10 @@ FitReport fitJoint(const std::vector<Sightings>& leds, Facets facets, double alp
 
 /// From where a fit ended without convergence, with f0 held there: a lobe hardly shows it, as the
 /// LEDs' strengths are free.
-FitReport fitHeld(const std::vector<Sightings>& leds,
-                  Facets facets,
-                  const std::vector<double>& from) {
+FitReport fitHeld(const std::vector<Sightings>& leds, const std::vector<double>& from) {
     const auto residuals = [&](std::span<const double> p, std::span<double> out) {
         const std::array held{p[0], p[1], p[2], from[3]};
-        residualsOf(leds, shapeOf(facets, held), normalOf(p[0], p[1]), out);
+        residualsOf(leds, shapeOf(held), normalOf(p[0], p[1]), out);
         return true;
     };
     FitReport report = fit({.residuals = residuals,
@@ -293,22 +276,15 @@ FitReport noFit() {
             .covariance = Eigen::MatrixXd::Constant(4, 4, std::nan(""))};
 }
 
-struct JointFit {
-    Facets facets = Facets::Ggx;
-    FitReport report;
-};
-
-/// By lobes of these facets, from several widths, as a start too narrow or too wide does not see
-/// the lobe. Empty: no fit settles.
-std::optional<FitReport> jointOf(const std::vector<Sightings>& leds,
-                                 Facets facets,
-                                 std::initializer_list<double> widths) {
+/// From several widths, as a start too narrow or too wide does not see the lobe. Empty: there is
+/// none; not ok: there is one, and no fit finds it.
+std::optional<FitReport> bestJoint(const std::vector<Sightings>& leds) {
     std::optional<FitReport> best, unsettled;
     const auto better = [](const FitReport& report, const std::optional<FitReport>& than) {
         return std::isfinite(report.rms) && (!than || report.rms < than->rms);
     };
-    for (double alpha : widths) {
-        FitReport report = fitJoint(leds, facets, alpha);
+    for (double alpha : {0.05, 0.2, 0.5}) {
+        FitReport report = fitJoint(leds, alpha);
         if (!report.ok()) {
             if (better(report, unsettled)) unsettled = std::move(report);
         } else if (better(report, best)) {
@@ -317,46 +293,21 @@ std::optional<FitReport> jointOf(const std::vector<Sightings>& leds,
         if (best && best->rms < kGoodFit) break;
     }
     if (!best && unsettled) {
-        FitReport report = fitHeld(leds, facets, unsettled->params);
+        FitReport report = fitHeld(leds, unsettled->params);
         if (report.ok()) best = std::move(report);
     }
-    return best;
-}
-
-/// The lobe that fits best, and, where that is not to perfection, one of other facets.
-struct JointFits {
-    JointFit best;
-    std::optional<JointFit> other;
-};
-
-/// Empty: there is no lobe; not ok: there is one, and no fit finds it.
-std::optional<JointFits> bestJoint(const std::vector<Sightings>& leds) {
-    std::optional<JointFits> fits;
-    if (auto ggx = jointOf(leds, Facets::Ggx, {0.05, 0.2, 0.5})) {
-        const double alpha = std::exp(ggx->params[2]);
-        fits = JointFits{.best = {Facets::Ggx, std::move(*ggx)}, .other = {}};
-        if (fits->best.report.rms >= kGoodFit) {
-            if (auto beckmann = jointOf(leds, Facets::Beckmann, {alpha})) {
-                fits->other = JointFit{Facets::Beckmann, std::move(*beckmann)};
-                if (fits->other->report.rms < fits->best.report.rms) {
-                    std::swap(fits->best, *fits->other);
-                }
-            }
-        }
-    }
     const double count = static_cast<double>(countOf(leds));
-    const double rms = fits ? fits->best.report.rms : 1;
-    const double left = rms * rms * count;
+    const double left = best ? best->rms * best->rms * count : count;
     const double without = matt(leds);
     if (without - left < kLobeChiSquare || without < kLobeGain * left) return std::nullopt;
-    return fits ? fits : JointFits{.best = {Facets::Ggx, noFit()}, .other = {}};
+    return best ? best : noFit();
 }
 
 /// Root mean square of the relative misfit, beyond the noise, over the lobes of one LED.
 double misfitOf(std::span<const Sighting> sightings,
                 const TiltLobe& lobe,
                 const Direction& normal) {
-    const std::vector<Parts> parts = partsOf(sightings, shapeOf(lobe), toSurface(normal));
+    const std::vector<Parts> parts = partsOf(sightings, {lobe.alpha, lobe.f0}, toSurface(normal));
     double squares = 0;
     int count = 0;
     for (std::size_t i = 0; i < sightings.size(); ++i) {
@@ -369,46 +320,14 @@ double misfitOf(std::span<const Sighting> sightings,
     return std::sqrt(std::max(0.0, squares) / std::max(1, count));
 }
 
-/// Of the worst LED.
-double worstMisfit(const std::vector<Sightings>& leds,
-                   const Shape& shape,
-                   const Direction& normal) {
-    double worst = 0;
-    for (const Sightings& led : leds) {
-        const TiltLobe lobe = strengths(led, shape, toSurface(normal));
-        worst = std::max(worst, misfitOf(led, lobe, normal));
-    }
-    return worst;
-}
-
-/// Facets of another kind, and how much they count against those that fit best: as the latter's
-/// misfit to theirs.
-struct OtherFacets {
-    Shape shape;
-    Direction normal;
-    double weight = 0;
-};
-std::optional<OtherFacets> otherFacets(const JointFits& fits,
-                                       const std::vector<Sightings>& leds,
-                                       double misfitOfBest) {
-    if (!fits.other) return std::nullopt;
-    const std::vector<double>& p = fits.other->report.params;
-    OtherFacets other{.shape = shapeOf(fits.other->facets, p), .normal = normalOf(p[0], p[1])};
-    const double misfit = worstMisfit(leds, other.shape, other.normal);
-    other.weight = misfit > 0 ? std::min(1.0, misfitOfBest / misfit) : 0;
-    return other;
-}
-
 /// By how far the cells really scatter about the fit.
 TurnUncertainty uFitOf(const FitReport& report) {
     return {Radians(report.rms * std::sqrt(report.covariance(0, 0))),
             Radians(report.rms * std::sqrt(report.covariance(1, 1)))};
 }
 
-/// What a misfit may do to it, and what facets of another kind did.
-Radians uMisfitOf(double misfit, double alpha, Radians byOtherFacets) {
-    return Radians(std::hypot(misfit * alpha / 4, byOtherFacets.value()));
-}
+/// What a misfit may do to it.
+Radians uMisfitOf(double misfit, double alpha) { return Radians(misfit * alpha / 4); }
 
 /// With the lens map's part.
 Normal uncertain(const Direction& normal,
@@ -428,45 +347,32 @@ struct OwnNormal {
     Normal normal;
     TurnUncertainty uFit;
     Radians uMisfit;
-    Radians byOtherFacets;  ///< how far from it facets of another kind put it
 };
 
-/// n.x / n.z and n.y / n.z of the normal that one LED sees, from the joint one's on; the lobe is
-/// held.
-FitReport fitOwn(std::span<const Sighting> sightings, const Shape& shape, const Direction& from) {
+/// The lobe's width is held.
+std::optional<OwnNormal> normalSeenBy(std::span<const Sighting> sightings,
+                                      const Shape& shape,
+                                      const Normal& joint,
+                                      Radians uAngle) {
     const auto residuals = [&](std::span<const double> p, std::span<double> out) {
         residualsOf(sightings, shape, normalOf(p[0], p[1]), out);
         return true;
     };
-    return fit({.residuals = residuals,
-                .residualCount = sightings.size(),
-                .start = {from.x() / from.z(), from.y() / from.z()},
-                .lower = {-kSteepest, -kSteepest},
-                .upper = {kSteepest, kSteepest},
-                .maxIterations = kMostIterations});
-}
-
-std::optional<OwnNormal> normalSeenBy(std::span<const Sighting> sightings,
-                                      const Shape& shape,
-                                      const std::optional<OtherFacets>& other,
-                                      const Normal& joint,
-                                      Radians uAngle) {
-    const FitReport report = fitOwn(sightings, shape, joint.direction);
+    const Direction& from = joint.direction;
+    const FitReport report = fit({.residuals = residuals,
+                                  .residualCount = sightings.size(),
+                                  .start = {from.x() / from.z(), from.y() / from.z()},
+                                  .lower = {-kSteepest, -kSteepest},
+                                  .upper = {kSteepest, kSteepest},
+                                  .maxIterations = kMostIterations});
     if (!report.ok()) return std::nullopt;
     const Direction own = normalOf(report.params[0], report.params[1]);
     const double misfit = misfitOf(sightings, strengths(sightings, shape, toSurface(own)), own);
-    OwnNormal seen{.normal = {}, .uFit = uFitOf(report), .uMisfit = {}, .byOtherFacets = {}};
-    if (other) {
-        const FitReport second = fitOwn(sightings, other->shape, joint.direction);
-        if (second.ok()) {
-            const Direction theirs = normalOf(second.params[0], second.params[1]);
-            seen.byOtherFacets = angleBetween({own, theirs}) * other->weight;
-        }
-    }
-    seen.uMisfit = uMisfitOf(misfit, shape.alpha, {});
-    seen.normal = uncertain(own, seen.uFit, seen.uMisfit, uAngle);
-    if (seen.normal.u.value() > kWorstFit) return std::nullopt;
-    return seen;
+    const TurnUncertainty uFit = uFitOf(report);
+    const Radians uMisfit = uMisfitOf(misfit, shape.alpha);
+    const Normal normal = uncertain(own, uFit, uMisfit, uAngle);
+    if (normal.u.value() > kWorstFit) return std::nullopt;
+    return OwnNormal{.normal = normal, .uFit = uFit, .uMisfit = uMisfit};
 }
 
 /// A lobe that stands out of its floor: less is the floor's own departure from Lambert's.
@@ -475,45 +381,74 @@ bool standsOut(const SampleSet& sample, const TiltEstimate& estimate) {
     for (std::size_t led = 0; led < sample.leds.size(); ++led) {
         const TiltLobe& lobe = estimate.lobes[led];
         const Direction wi = Direction::fromSpherical(sample.leds[led].incidence, Radians(0));
-        const Parts parts = partsOf(shapeOf(lobe), Eigen::Matrix3d::Identity(), {wi, mirrorOf(wi)});
+        const Parts parts =
+            partsOf({lobe.alpha, lobe.f0}, Eigen::Matrix3d::Identity(), {wi, mirrorOf(wi)});
         const double there = lobe.specular * parts.lobe;
         if (there > kLeastShare * (there + lobe.diffuse * parts.floor)) ++count;
     }
     return 2 * count >= sample.leds.size();
 }
 
-/// What the LEDs' own normals differ by beyond their noise.
-/// In the plane of incidence a normal is as the lobe's shape is taken to be; across it any lobe is
-/// even. Where the shape matters more than kShapeMatters, waves across the plane stand for both.
-struct Waves {
-    double x = 0, y = 0;  ///< mean squares, of which noise may leave less than nothing
-    double byShape = 0;   ///< mean square of what other facets change
+double alongX(const Direction& normal) { return normal.x() / normal.z(); }
+double alongY(const Direction& normal) { return normal.y() / normal.z(); }
+
+/// What the LEDs' own normals differ by across the plane of incidence beyond their noise, root mean
+/// square.
+Radians wavesAcross(std::span<const std::optional<OwnNormal>> leds, const Direction& joint) {
+    double squares = 0;  // of which noise may leave less than nothing
     int count = 0;
-
-    [[nodiscard]] Radians both() const { return root(along() + y); }
-    [[nodiscard]] TurnUncertainty byAxis() const { return {root(along()), root(y)}; }
-
-private:
-    [[nodiscard]] double along() const {
-        return byShape > count * kShapeMatters * kShapeMatters ? y : x;
-    }
-    [[nodiscard]] Radians root(double squares) const {
-        return Radians(count < 2 ? 0 : std::sqrt(std::max(0.0, squares / count)));
-    }
-};
-
-Waves wavesOf(std::span<const std::optional<OwnNormal>> leds, const Direction& joint) {
-    Waves waves;
     for (const auto& led : leds) {
         if (!led) continue;
-        const Eigen::Vector3d apart = led->normal.direction.vector() - joint.vector();
-        const double misfit = 0.5 * led->uMisfit.value() * led->uMisfit.value();
-        waves.x += apart.x() * apart.x() - std::pow(led->uFit.towardX.value(), 2) - misfit;
-        waves.y += apart.y() * apart.y() - std::pow(led->uFit.towardY.value(), 2) - misfit;
-        waves.byShape += led->byOtherFacets.value() * led->byOtherFacets.value();
-        ++waves.count;
+        squares += std::pow(led->normal.direction.y() - joint.y(), 2) -
+                   std::pow(led->uFit.towardY.value(), 2) - 0.5 * std::pow(led->uMisfit.value(), 2);
+        ++count;
     }
-    return waves;
+    return Radians(count < 2 ? 0 : std::sqrt(std::max(0.0, squares / count)));
+}
+
+/// The LED whose light comes from the normal, and in which no lobe's shape is taken for a tilt.
+std::optional<OwnNormal> atTheNormal(const SampleSet& sample,
+                                     std::span<const std::optional<OwnNormal>> own) {
+    for (std::size_t led = 0; led < own.size(); ++led) {
+        if (sample.leds[led].incidence < 5_deg) return own[led];
+    }
+    return std::nullopt;
+}
+
+/// How far the oblique LEDs put the normal along x from where the even lobe has it, root mean
+/// square, beyond their noise.
+double leanOfOblique(std::span<const std::optional<OwnNormal>> own, const OwnNormal& even) {
+    const double here = alongX(even.normal.direction);
+    double squares = 0;
+    int count = -1;  // the even one is among them
+    for (const auto& led : own) {
+        if (!led) continue;
+        const double off = alongX(led->normal.direction) - here;
+        if (off == 0) {
+            ++count;
+            continue;
+        }
+        squares += off * off - std::pow(led->uFit.towardX.value(), 2) -
+                   std::pow(even.uFit.towardX.value(), 2);
+        ++count;
+    }
+    return std::sqrt(std::max(0.0, squares) / std::max(1, count));
+}
+
+/// The joint normal with x as far from the LED at the normal as the others disagree with it.
+Normal evened(const Normal& joint,
+              const TurnUncertainty& uFit,
+              double lean,
+              const OwnNormal& even,
+              Radians uAngle) {
+    const double fromAll = std::pow(uFit.towardX.value(), 2) + lean * lean;
+    const double fromEven = std::pow(even.uFit.towardX.value(), 2);
+    const double share = fromEven > 0 ? fromAll / (fromAll + fromEven) : 1;
+    const double x = share * alongX(even.normal.direction) + (1 - share) * alongX(joint.direction);
+    return uncertain(normalOf(x, alongY(joint.direction)),
+                     {Radians(std::sqrt(share * fromEven)), uFit.towardY},
+                     even.uMisfit,
+                     uAngle);
 }
 
 /// There is a lobe, and how it lies is not to be seen.
@@ -539,34 +474,37 @@ double tiltedLobe(const TiltLobe& lobe, const Direction& normal, const LightView
 std::optional<TiltEstimate> estimateTilt(const SampleSet& sample, Radians uAngle) {
     std::vector<Sightings> leds;
     for (const LedTable& led : sample.leds) leds.push_back(sightingsOf(led));
-    const std::optional<JointFits> joint = bestJoint(leds);
-    if (!joint) return std::nullopt;
-    const FitReport& report = joint->best.report;
-    const Shape shape = shapeOf(joint->best.facets, report.params);
-    TiltEstimate estimate{.joint = {normalOf(report.params[0], report.params[1]), {}, {}},
+    const std::optional<FitReport> report = bestJoint(leds);
+    if (!report) return std::nullopt;
+    const Shape shape = shapeOf(report->params);
+    TiltEstimate estimate{.joint = {normalOf(report->params[0], report->params[1]), {}, {}},
                           .leds = {},
                           .lobes = {},
                           .waviness = {}};
     const Direction normal = estimate.joint.direction;
     for (const Sightings& led : leds) {
         estimate.lobes.push_back(strengths(led, shape, toSurface(normal)));
+        const double misfit = misfitOf(led, estimate.lobes.back(), normal);
+        estimate.misfit = std::max(estimate.misfit, misfit);
     }
-    estimate.misfit = worstMisfit(leds, shape, normal);
     if (!standsOut(sample, estimate)) return std::nullopt;
-    const std::optional<OtherFacets> other = otherFacets(*joint, leds, estimate.misfit);
-    const Radians byOther =
-        other ? angleBetween({normal, other->normal}) * other->weight : Radians(0);
-    estimate.joint =
-        uncertain(normal, uFitOf(report), uMisfitOf(estimate.misfit, shape.alpha, byOther), uAngle);
-    if (!(estimate.joint.u.value() <= kWorstFit)) return undetermined(std::move(estimate));
+    const TurnUncertainty uFit = uFitOf(*report);
+    estimate.joint = uncertain(normal, uFit, uMisfitOf(estimate.misfit, shape.alpha), uAngle);
     std::vector<std::optional<OwnNormal>> own;
     for (const Sightings& led : leds) {
-        own.push_back(normalSeenBy(led, shape, other, estimate.joint, uAngle));
+        own.push_back(normalSeenBy(led, shape, estimate.joint, uAngle));
         estimate.leds.push_back(own.back() ? std::optional(own.back()->normal) : std::nullopt);
     }
-    const Waves waves = wavesOf(own, normal);
-    estimate.waviness = waves.both();
-    estimate.waves = waves.byAxis();
+    if (const auto even = atTheNormal(sample, own)) {
+        estimate.joint = evened(estimate.joint, uFit, leanOfOblique(own, *even), *even, uAngle);
+        for (std::size_t led = 0; led < leds.size(); ++led) {
+            estimate.lobes[led] = strengths(leds[led], shape, toSurface(estimate.joint.direction));
+        }
+    }
+    if (!(estimate.joint.u.value() <= kWorstFit)) return undetermined(std::move(estimate));
+    const Radians across = wavesAcross(own, estimate.joint.direction);
+    estimate.waviness = across * std::numbers::sqrt2;
+    estimate.waves = TurnUncertainty::even(across);
     return estimate;
 }
 

@@ -7,10 +7,14 @@
 // is measured as f at (wi, wo) is
 //     f'(wi, wo) = f(R^T wi, R^T wo) (R^T wo).z / wo.z,
 // as the lit spot lies within the aperture's view. n is fitted jointly to all LEDs, with f a
-// Lambert floor and one lobe common to them, of GGX's facets or of Beckmann's [Walter2007],
-// whichever fits better; where a real lobe is neither, the misfit widens the uncertainty. Each
-// LED's own normal is then fitted with that lobe held: on a wavy surface they disagree by more than
-// noise explains.
+// Lambert floor and one GGX lobe [Walter2007] common to them; where a real lobe is none, the misfit
+// widens the uncertainty. Each LED's own normal is then fitted with that lobe held.
+//
+// In the plane of incidence (x) a lobe of another shape is taken for a tilt: by up to 1 degree
+// under 60 degrees of incidence for Beckmann's, Ward's or Phong's, more than for any tilt's worth.
+// At normal incidence, and across the plane (y), every lobe is even: there the shape does not
+// matter. So x is the joint fit's only as far as the oblique LEDs agree with the one at the normal,
+// and waves, by which LEDs disagree, are looked for across the plane and taken as alike along it.
 //
 // A matt sample shows no lobe, and its tilt does no harm: no answer. Where there is a lobe and its
 // fit leaves the normal open by more than half a degree, that is the answer:
@@ -27,15 +31,9 @@
 
 namespace gonio::proc {
 
-enum class Facets {
-    Ggx,
-    Beckmann
-};
-
 /// What one LED sees of the surface that the normal is fitted with: diffuse / pi + specular D V F,
 /// both the mean of the bands, F by Schlick with f0.
 struct TiltLobe {
-    Facets facets = Facets::Ggx;
     double diffuse = 0;
     double specular = 1;
     double alpha = 0.1;
@@ -71,7 +69,8 @@ struct TiltEstimate {
     bool determined = true;                   ///< else there is a lobe, and `joint` is the seat's
     double misfit = 0;  ///< rms of (measured - fitted) / measured over the lobes, beyond the noise
     /// Root mean square angle between the LEDs' normals and the joint one, beyond the scatter and
-    /// the misfit of their fits; 0 where these explain it.
+    /// the misfit of their fits; 0 where these explain it. Both axes, from the one across the
+    /// plane.
     Radians waviness;
     TurnUncertainty waves;  ///< the same by axis, of one LED's normal
 };
