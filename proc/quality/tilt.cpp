@@ -406,36 +406,34 @@ Radians wavesAcross(std::span<const std::optional<OwnNormal>> leds, const Direct
     return Radians(count < 2 ? 0 : std::sqrt(std::max(0.0, squares / count)));
 }
 
-/// The LED whose light comes from the normal, and in which no lobe's shape is taken for a tilt.
-std::optional<OwnNormal> atTheNormal(const SampleSet& sample,
-                                     std::span<const std::optional<OwnNormal>> own) {
+/// The LED whose light comes from the normal, where no lobe's shape is taken for a tilt; empty
+/// where none told its normal.
+std::optional<std::size_t> atTheNormal(const SampleSet& sample,
+                                       std::span<const std::optional<OwnNormal>> own) {
     for (std::size_t led = 0; led < own.size(); ++led) {
-        if (sample.leds[led].incidence < 5_deg) return own[led];
+        if (own[led] && sample.leds[led].incidence < 5_deg) return led;
     }
     return std::nullopt;
 }
 
-/// How far the oblique LEDs put the normal along x from where the even lobe has it, root mean
-/// square, beyond their noise.
-double leanOfOblique(std::span<const std::optional<OwnNormal>> own, const OwnNormal& even) {
-    const double here = alongX(even.normal.direction);
+/// How far the oblique LEDs put the normal along x from where LED `even` has it, root mean square,
+/// beyond their noise.
+double leanOfOblique(std::span<const std::optional<OwnNormal>> own, std::size_t even) {
+    const OwnNormal& straight = *own[even];
     double squares = 0;
-    int count = -1;  // the even one is among them
-    for (const auto& led : own) {
-        if (!led) continue;
-        const double off = alongX(led->normal.direction) - here;
-        if (off == 0) {
-            ++count;
-            continue;
-        }
-        squares += off * off - std::pow(led->uFit.towardX.value(), 2) -
-                   std::pow(even.uFit.towardX.value(), 2);
+    int count = 0;
+    for (std::size_t led = 0; led < own.size(); ++led) {
+        if (led == even || !own[led]) continue;
+        const double off = alongX(own[led]->normal.direction) - alongX(straight.normal.direction);
+        squares += off * off - std::pow(own[led]->uFit.towardX.value(), 2) -
+                   std::pow(straight.uFit.towardX.value(), 2);
         ++count;
     }
     return std::sqrt(std::max(0.0, squares) / std::max(1, count));
 }
 
-/// The joint normal with x as far from the LED at the normal as the others disagree with it.
+/// The joint normal, x weighted by inverse variance with that of the LED at the normal: the joint
+/// fit's has the lean in it.
 Normal evened(const Normal& joint,
               const TurnUncertainty& uFit,
               double lean,
@@ -496,7 +494,8 @@ std::optional<TiltEstimate> estimateTilt(const SampleSet& sample, Radians uAngle
         estimate.leds.push_back(own.back() ? std::optional(own.back()->normal) : std::nullopt);
     }
     if (const auto even = atTheNormal(sample, own)) {
-        estimate.joint = evened(estimate.joint, uFit, leanOfOblique(own, *even), *even, uAngle);
+        estimate.joint =
+            evened(estimate.joint, uFit, leanOfOblique(own, *even), *own[*even], uAngle);
         for (std::size_t led = 0; led < leds.size(); ++led) {
             estimate.lobes[led] = strengths(leds[led], shape, toSurface(estimate.joint.direction));
         }
