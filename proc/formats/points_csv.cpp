@@ -73,8 +73,7 @@ std::string joined(std::span<const std::string_view> names) {
 
 /// From degrees as a file gives them: 90 degrees is on the horizon, not 6e-17 above it.
 Direction fromFileDegrees(double theta, double phi) {
-    const Direction w =
-        Direction::fromSpherical(Radians::fromDegrees(theta), Radians::fromDegrees(phi));
+    Direction w = Direction::fromSpherical(Radians::fromDegrees(theta), Radians::fromDegrees(phi));
     if (theta < 90 || w.z() <= 0) return w;
     return *Direction::fromVector({w.x(), w.y(), 0});
 }
@@ -205,6 +204,7 @@ std::string orEmpty(double value) { return std::isfinite(value) ? shortest(value
 std::vector<std::string> perBand(const std::string& name, BandCount bands) {
     if (bands == BandCount::One) return {name};
     std::vector<std::string> names;
+    names.reserve(kBands.size());
     for (const Band b : kBands) names.push_back(name + "_" + std::string(letter(b)));
     return names;
 }
@@ -241,8 +241,7 @@ Result<std::vector<double>> numbersOf(const Points& points, std::string_view col
         if (!number) {
             return Error{ErrorKind::File,
                          "csv: data row " + std::to_string(i + 1) + ": " + std::string(column) +
-                             ": " +
-                             shown(field) + ", wanted a number"};
+                             ": " + shown(field) + ", wanted a number"};
         }
         numbers.push_back(*number);
     }

@@ -35,6 +35,7 @@ constexpr auto kPowers = powersByName(std::make_index_sequence<kPowerForms.size(
 
 Lobe makeBlinnPhong(SpecParameters& p, EvalPath path) {
     std::vector<std::string> names;
+    names.reserve(kPowers.size());
     for (const NamedPower& power : kPowers) names.emplace_back(power.name);
     const BlinnPhongNumbers numbers{.kd = p.bands("kd", kShare),
                                     .ks = p.bands("ks", kFactorRange),

@@ -296,7 +296,7 @@ std::optional<FitReport> bestJoint(const std::vector<Sightings>& leds) {
         FitReport report = fitHeld(leds, unsettled->params);
         if (report.ok()) best = std::move(report);
     }
-    const double count = static_cast<double>(countOf(leds));
+    const auto count = static_cast<double>(countOf(leds));
     const double left = best ? best->rms * best->rms * count : count;
     const double without = matt(leds);
     if (without - left < kLobeChiSquare || without < kLobeGain * left) return std::nullopt;
@@ -471,6 +471,7 @@ double tiltedLobe(const TiltLobe& lobe, const Direction& normal, const LightView
 
 std::optional<TiltEstimate> estimateTilt(const SampleSet& sample, Radians uAngle) {
     std::vector<Sightings> leds;
+    leds.reserve(sample.leds.size());
     for (const LedTable& led : sample.leds) leds.push_back(sightingsOf(led));
     const std::optional<FitReport> report = bestJoint(leds);
     if (!report) return std::nullopt;

@@ -280,7 +280,8 @@ NormalFit fitNormal(const NormalProblem& problem) {
     }
     fit.atBound = held;
     if (how != ceres::CONVERGENCE) {
-        return failed(std::move(fit), FitStatus::NotConverged, fit.message);
+        std::string message = fit.message;
+        return failed(std::move(fit), FitStatus::NotConverged, std::move(message));
     }
     fit.status = FitStatus::Converged;
     fillCovariance(FreePart(problem, at, held), fit);
