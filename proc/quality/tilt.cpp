@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <span>
 
 #include "proc/models/ggx.h"
@@ -392,18 +391,23 @@ bool standsOut(const SampleSet& sample, const TiltEstimate& estimate) {
 double alongX(const Direction& normal) { return normal.x() / normal.z(); }
 double alongY(const Direction& normal) { return normal.y() / normal.z(); }
 
-/// What the LEDs' own normals differ by across the plane of incidence beyond their noise, root mean
-/// square.
-Radians wavesAcross(std::span<const std::optional<OwnNormal>> leds, const Direction& joint) {
-    double squares = 0;  // of which noise may leave less than nothing
+/// What the LEDs' own normals differ by beyond their noise, root mean square. Along the plane of
+/// incidence a lobe's lean is in it: there no more than across.
+TurnUncertainty wavesOf(std::span<const std::optional<OwnNormal>> leds, const Direction& joint) {
+    double x = 0, y = 0;  // of which noise may leave less than nothing
     int count = 0;
     for (const auto& led : leds) {
         if (!led) continue;
-        squares += std::pow(led->normal.direction.y() - joint.y(), 2) -
-                   std::pow(led->uFit.towardY.value(), 2) - 0.5 * std::pow(led->uMisfit.value(), 2);
+        const Eigen::Vector3d apart = led->normal.direction.vector() - joint.vector();
+        const double misfit = 0.5 * std::pow(led->uMisfit.value(), 2);
+        x += std::pow(apart.x(), 2) - std::pow(led->uFit.towardX.value(), 2) - misfit;
+        y += std::pow(apart.y(), 2) - std::pow(led->uFit.towardY.value(), 2) - misfit;
         ++count;
     }
-    return Radians(count < 2 ? 0 : std::sqrt(std::max(0.0, squares / count)));
+    const auto root = [&](double squares) {
+        return Radians(count < 2 ? 0 : std::sqrt(std::max(0.0, squares / count)));
+    };
+    return {root(std::min(x, y)), root(y)};
 }
 
 /// The LED whose light comes from the normal, where no lobe's shape is taken for a tilt; empty
@@ -502,9 +506,9 @@ std::optional<TiltEstimate> estimateTilt(const SampleSet& sample, Radians uAngle
         }
     }
     if (!(estimate.joint.u.value() <= kWorstFit)) return undetermined(std::move(estimate));
-    const Radians across = wavesAcross(own, estimate.joint.direction);
-    estimate.waviness = across * std::numbers::sqrt2;
-    estimate.waves = TurnUncertainty::even(across);
+    estimate.waves = wavesOf(own, estimate.joint.direction);
+    estimate.waviness =
+        Radians(std::hypot(estimate.waves.towardX.value(), estimate.waves.towardY.value()));
     return estimate;
 }
 

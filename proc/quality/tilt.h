@@ -14,7 +14,8 @@
 // under 60 degrees of incidence for Beckmann's, Ward's or Phong's, more than for any tilt's worth.
 // At normal incidence, and across the plane (y), every lobe is even: there the shape does not
 // matter. So x is the joint fit's only as far as the oblique LEDs agree with the one at the normal,
-// and waves, by which LEDs disagree, are looked for across the plane and taken as alike along it.
+// and waves, by which LEDs disagree, are looked for across the plane; along it they count as far as
+// they are no larger.
 //
 // A matt sample shows no lobe, and its tilt does no harm: no answer. Where there is a lobe and its
 // fit leaves the normal open by more than half a degree, that is the answer:
