@@ -3,6 +3,7 @@ find_package(Threads REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(spdlog REQUIRED)
 find_package(Ceres REQUIRED)
+find_path(NANOFLANN_INCLUDE nanoflann.hpp REQUIRED)  # headers only
 find_package(OpenEXR REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)

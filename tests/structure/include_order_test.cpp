@@ -81,6 +81,7 @@ struct Wrapped {
 const std::vector<Wrapped> kWrapped{
     {std::regex("spdlog/.*"), "proc/core/log.cpp"},
     {std::regex("ceres/.*"), "proc/solve/"},
+    {std::regex("nanoflann\\.hpp"), "proc/table/"},
     {std::regex("(OpenEXR/)?Imf.*|Imath/.*|Imath.*"), "proc/formats/"},
     {std::regex("libusb.*|hidapi.*"), "driver/"},
     {std::regex("sqlite3\\.h|httplib\\.h|systemd/.*"), "daemon/"},
