@@ -2,6 +2,8 @@
 #include "proc/models/beckmann.h"
 #include "proc/models/disney_diffuse.h"
 #include "proc/models/ggx.h"
+#include "proc/models/gtr.h"
+#include "proc/models/lafortune.h"
 #include "proc/models/lambert.h"
 #include "proc/models/oren_nayar.h"
 
@@ -33,6 +35,33 @@ struct GlossyLobes {
     template <class P>
     static auto kernel(const P* shared, const Bands<P>* perBand) {
         return BothKernels{Lambert<P>{perBand[0]}, lobe<Kernel>(shared[0], perBand[1])};
+    }
+};
+
+/// Tails as long as the data want them.
+struct TailedLobes {
+    static constexpr int kShared = 2;
+    static constexpr int kPerBand = 2;
+    template <class P>
+    static auto kernel(const P* shared, const Bands<P>* perBand) {
+        return BothKernels{Lambert<P>{perBand[0]},
+                           Gtr<P>{.alpha = shared[0],
+                                  .gamma = shared[1],
+                                  .peak = gtrPeak(shared[0], shared[1]),
+                                  .fresnel = lobe<Ggx>(shared[0], perBand[1]).fresnel}};
+    }
+};
+
+/// A cosine lobe back towards the light beside the mirror lobe.
+struct RetroLobes {
+    static constexpr int kShared = 2;
+    static constexpr int kPerBand = 3;
+    template <class P>
+    static auto kernel(const P* shared, const Bands<P>* perBand) {
+        return BothKernels{
+            Lambert<P>{perBand[0]},
+            BothKernels{lobe<Ggx>(shared[0], perBand[1]),
+                        Lafortune<P>{perBand[2], P(1), P(1), shared[1]}}};
     }
 };
 
@@ -100,6 +129,35 @@ void addMicrofacetFamilies(FamilyList& list) {
         "lambert+ggx+ggx",
         {{"lambert"}, {"ggx"}, {"ggx"}},
         {fp::width("alpha", 1), fp::secondWidth("alpha", 2), fp::albedo(), fp::f0(1), fp::f0(2)});
+    add<TailedLobes>(list,
+                     "lambert+gtr",
+                     {{"lambert"}, {"gtr"}},
+                     {fp::width("alpha", 1),
+                      {.name = "gamma",
+                       .lobe = 1,
+                       .unit = "1",
+                       .lower = 0.6,
+                       .upper = 10,
+                       .scale = ParameterScale::Log,
+                       .starts = {1.2, 2, 4}},
+                      fp::albedo(),
+                      fp::f0(1)});
+    FamilyParameter ks = fp::ks();
+    ks.lobe = 2;
+    add<RetroLobes>(list,
+                    "lambert+ggx+retro",
+                    {{"lambert"}, {"ggx"}, {"lafortune", "cxy=1,cz=1"}},
+                    {fp::width("alpha", 1),
+                     {.name = "n",
+                      .lobe = 2,
+                      .unit = "1",
+                      .lower = 1,
+                      .upper = 8e4,
+                      .scale = ParameterScale::Log,
+                      .starts = {3, 20, 200, 2000}},
+                     fp::albedo(),
+                     fp::f0(1),
+                     ks});
 }
 
 }  // namespace gonio::proc

@@ -93,6 +93,20 @@ FamilyPoint FitSums::point(std::span<const double> q) const {
     return point;
 }
 
+std::vector<double> FitSums::numbersOf(const FamilyPoint& point) const {
+    std::vector<double> q(count());
+    const auto number = [&](std::size_t place, double value) {
+        const FamilyParameter& p = parameter(place);
+        const double inside = std::clamp(value, p.lower, p.upper);
+        q[place] = p.scale == ParameterScale::Log ? std::log(inside) : inside;
+    };
+    for (std::size_t i = 0; i < shared_; ++i) number(i, point.shared[i]);
+    for (std::size_t k = 0; k < perBand_; ++k) {
+        for (std::size_t b = 0; b < bands_; ++b) number(place(k, b), point.perBand[k].value[b]);
+    }
+    return q;
+}
+
 FitSums::Loss FitSums::robust(double s) const {
     const double scale2 = options_.lossScale * options_.lossScale;
     switch (options_.loss) {

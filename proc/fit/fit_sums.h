@@ -47,6 +47,8 @@ public:
     /// d value / d q.
     [[nodiscard]] double slope(std::size_t place, double q) const;
     [[nodiscard]] FamilyPoint point(std::span<const double> q) const;
+    /// The q of a point, within its bounds.
+    [[nodiscard]] std::vector<double> numbersOf(const FamilyPoint& point) const;
 
     [[nodiscard]] std::size_t residualCount(std::span<const std::uint32_t> rows) const;
     [[nodiscard]] std::optional<NormalSums> sums(std::span<const double> q,

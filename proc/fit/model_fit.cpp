@@ -280,6 +280,11 @@ std::optional<std::vector<double>> bestStart(const Family& family,
                                              ModelFit& fit) {
     const Rows rows =
         thinnedRows(data, std::vector<bool>(data.incidences.size(), true), options.startRows);
+    if (options.start) {
+        std::vector<double> q = sums.numbersOf(*options.start);
+        if (!std::isfinite(sums.solvePerBand(q, rows))) return std::nullopt;
+        return q;
+    }
     std::optional<std::vector<double>> best;
     double least = std::numeric_limits<double>::infinity();
     for (const Start& start : gridOfStarts(family, sums, rows)) {
@@ -337,11 +342,12 @@ ModelFit fitModel(const Family& family, const BrdfData& data, const ModelFitOpti
         return fit;
     }
     const Rows rows = allRows(data);
-    NormalFit solved = solve(sums, rows, *start, {.iterations = options.maxIterations});
+    const Search search{.iterations = options.maxIterations, .tolerance = options.tolerance};
+    NormalFit solved = solve(sums, rows, *start, search);
     fit.iterations = solved.iterations;
     if (solved.usable() && data.sharesErrors()) {
         sums.shareErrors(sums.point(solved.params));
-        solved = solve(sums, rows, solved.params, {.iterations = options.maxIterations});
+        solved = solve(sums, rows, solved.params, search);
         fit.iterations += solved.iterations;
     }
     fit.status = solved.status;

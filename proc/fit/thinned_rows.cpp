@@ -38,4 +38,17 @@ std::vector<std::uint32_t> thinnedRows(const BrdfData& data,
     return kept;
 }
 
+BrdfData withRows(const BrdfData& data, const std::vector<std::uint32_t>& rows) {
+    BrdfData only = data;
+    only.rows.clear();
+    only.nodes.clear();
+    for (const std::uint32_t i : rows) {
+        const auto nodes = data.nodesOf(data.rows[i]);
+        only.rows.push_back(data.rows[i]);
+        only.rows.back().firstNode = static_cast<std::uint32_t>(only.nodes.size());
+        only.nodes.insert(only.nodes.end(), nodes.begin(), nodes.end());
+    }
+    return only;
+}
+
 }  // namespace gonio::proc

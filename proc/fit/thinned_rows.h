@@ -15,4 +15,7 @@ namespace gonio::proc {
                                                      const std::vector<bool>& groups,
                                                      std::size_t count);
 
+/// The data with these rows alone; all incidences stay, some without rows.
+[[nodiscard]] BrdfData withRows(const BrdfData& data, const std::vector<std::uint32_t>& rows);
+
 }  // namespace gonio::proc

@@ -1,6 +1,7 @@
 #include "proc/models/alpha_parameters.h"
 #include "proc/models/beckmann.h"
 #include "proc/models/ggx.h"
+#include "proc/models/gtr.h"
 #include "proc/models/kernel_model.h"
 #include "proc/models/multiple_scattering.h"
 #include "proc/models/tabulated.h"
@@ -67,6 +68,18 @@ Lobe makeBeckmann(SpecParameters& p, EvalPath path) {
     });
 }
 
+Lobe makeGtr(SpecParameters& p, EvalPath path) {
+    const double alpha = p.number("alpha", kAlphaRange);
+    const double gamma = p.number("gamma", {0.5, 10});
+    const FresnelNumbers fresnel = fresnelOf(p);
+    return kernelModel<Gtr>(path, [&]<class P>() {
+        return Gtr<P>{static_cast<P>(alpha),
+                      static_cast<P>(gamma),
+                      static_cast<P>(gtrPeak(alpha, gamma)),
+                      fresnel.as<P>()};
+    });
+}
+
 Lobe makeWalter(SpecParameters& p, EvalPath path) {
     const double alpha = p.number("alpha", kAlphaRange);
     const LedBands eta = p.bands("eta", kIndexRange);
@@ -91,6 +104,7 @@ Lobe makeTabulated(SpecParameters& p, EvalPath path) {
 
 constexpr std::array kModels{CatalogueEntry{"ggx", makeGgx},
                              CatalogueEntry{"beckmann", makeBeckmann},
+                             CatalogueEntry{"gtr", makeGtr},
                              CatalogueEntry{"walter", makeWalter},
                              CatalogueEntry{"tabulated", makeTabulated}};
 

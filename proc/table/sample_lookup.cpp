@@ -5,14 +5,13 @@
 #include <limits>
 
 #include "proc/core/coordinates.h"
-#include "proc/optics/cell_grid.h"
+#include "proc/optics/cell_blend.h"
 #include "proc/table/axis.h"
 
 namespace gonio::proc {
 namespace {
 
 constexpr double kAtLedDeg = 0.5;
-constexpr double kAtCentre = 1e-9;  ///< of a cell's width
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 struct Share {
@@ -35,43 +34,18 @@ private:
     std::size_t count_ = 0;
 };
 
-double fractionOf(double t) {
-    const double fraction = t - std::floor(t);
-    return fraction < kAtCentre || fraction > 1 - kAtCentre ? 0 : fraction;
-}
-
 /// One LED and what it weighs in the answer.
 struct LedShare {
     std::size_t led = 0;
     double weight = 1;
 };
 
-void addRow(Blend& blend, LedShare share, int row, Radians phi) {
-    const int sectors = CellGrid::sectors(row);
-    const double t = phi.value() / (2 * kPi) * sectors - 0.5;
-    const double fraction = fractionOf(t);
-    const int low = static_cast<int>(std::floor(fraction == 0 ? std::round(t) : t));
-    const auto cell = [&](int sector) {
-        return CellGrid::index({row, ((sector % sectors) + sectors) % sectors});
-    };
-    blend.add({share.led, cell(low), share.weight * (1 - fraction)});
-    blend.add({share.led, cell(low + 1), share.weight * fraction});
-}
-
-/// Bilinear between cell centres. wo is above the horizon.
+/// wo is above the horizon.
 void addCells(Blend& blend, LedShare share, const Direction& wo) {
-    const double t = wo.theta().degrees() - 0.5;
-    const double fraction = fractionOf(t);
-    const int low = static_cast<int>(std::floor(fraction == 0 ? std::round(t) : t));
-    const Radians phi = wo.phi();
-    // Below the first row's centre the other side of the pole is the neighbour.
-    const bool pole = low < 0;
-    const int last = CellGrid::kRows - 1;
-    addRow(blend,
-           {share.led, share.weight * (1 - fraction)},
-           pole ? 0 : std::min(low, last),
-           pole ? phi + Radians(kPi) : phi);
-    addRow(blend, {share.led, share.weight * fraction}, std::min(low + 1, last), phi);
+    const CellBlend around(wo);
+    for (const CellWeight& one : around.cells()) {
+        blend.add({share.led, one.cell, share.weight * one.weight});
+    }
 }
 
 /// Adds one cell's part to the answer's band. u_random is summed in squares.

@@ -1,0 +1,28 @@
+#pragma once
+// Models fitted to carry an interpolation.
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "proc/estimate/incidence_method.h"
+
+namespace gonio::proc {
+
+using Carriers = std::map<std::string, Carrier>;
+
+/// The families that are tried, by name: one for each kind of lobe and floor that surfaces show.
+[[nodiscard]] const std::vector<std::string>& carrierFamilies();
+
+struct CarrierFitOptions {
+    std::size_t rows = 3000;              ///< of the data, thinned
+    const Carriers* startedAt = nullptr;  ///< fits to more data, from which to start
+};
+
+/// To the incidences that are wanted; what could not be fitted is not in it. On all cores.
+[[nodiscard]] Carriers fitCarriers(const BrdfData& data,
+                                   const std::vector<bool>& groups,
+                                   const CarrierFitOptions& options = {});
+
+}  // namespace gonio::proc

@@ -1,0 +1,282 @@
+#include "proc/estimate/method_choice.h"
+
+#include <algorithm>
+#include <functional>
+
+namespace gonio::proc {
+namespace {
+
+using Method = std::shared_ptr<const IncidenceMethod>;
+
+/// What a candidate is made from.
+struct View {
+    const BrdfData& data;
+    const std::vector<bool>& groups;
+    std::optional<std::size_t> without;  ///< the incidence that is left out
+    bool whole;                          ///< no row of the others is left out
+    const Carriers& carriers;
+    const SamplePrior* prior;
+};
+
+struct Candidate {
+    std::string name;
+    std::function<Method(const View&)> make;  ///< null where it cannot be made
+};
+
+Candidate ofSheets(SheetMethodOptions options) {
+    return {options.name, [options](const View& view) -> Method {
+                return sheetMethod(view.data, view.groups, options);
+            }};
+}
+
+void addFixed(std::vector<Candidate>& list) {
+    list.push_back(ofSheets({.name = "specular-linear"}));
+    list.push_back(ofSheets({.name = "specular-log", .quantity = SheetQuantity::LogF}));
+    list.push_back(ofSheets({.name = "direction-cosine",
+                             .frame = IncidenceFrame::DirectionCosine,
+                             .quantity = SheetQuantity::LogF}));
+    list.push_back(ofSheets({.name = "half-vector",
+                             .frame = IncidenceFrame::HalfVector,
+                             .quantity = SheetQuantity::LogFCosines}));
+    list.push_back(ofSheets({.name = "catmull-rom",
+                             .quantity = SheetQuantity::LogF,
+                             .curve = IncidenceCurve::CatmullRom}));
+}
+
+Candidate carried(const std::string& prefix, const std::string& family, IncidenceCurve curve) {
+    const std::string name = prefix + family;
+    return {name, [name, family, curve](const View& view) -> Method {
+                const auto found = view.carriers.find(family);
+                if (found == view.carriers.end()) return nullptr;
+                return sheetMethod(view.data,
+                                   view.groups,
+                                   {.name = name,
+                                    .frame = IncidenceFrame::HalfVector,
+                                    .quantity = SheetQuantity::RatioToModel,
+                                    .curve = curve,
+                                    .carrier = found->second});
+            }};
+}
+
+void addOfFamily(std::vector<Candidate>& list, const std::string& family) {
+    list.push_back({"model:" + family, [family](const View& view) -> Method {
+                        const auto found = view.carriers.find(family);
+                        if (found == view.carriers.end()) return nullptr;
+                        return modelMethod(found->second);
+                    }});
+    list.push_back(carried("carried:", family, IncidenceCurve::Linear));
+    list.push_back(carried("carried-cubic:", family, IncidenceCurve::CatmullRom));
+}
+
+const std::vector<Candidate>& candidates() {
+    static const std::vector<Candidate> all = [] {
+        std::vector<Candidate> list;
+        addFixed(list);
+        for (const std::string& family : carrierFamilies()) addOfFamily(list, family);
+        list.push_back({"prior", [](const View& view) -> Method {
+                            if (view.prior == nullptr || !view.prior->passes()) return nullptr;
+                            return view.whole ? view.prior->method(view.without) : nullptr;
+                        }});
+        return list;
+    }();
+    return all;
+}
+
+/// Everything that is left out in turn, with the carriers of what is left.
+class Trials {
+public:
+    Trials(const BrdfData& data, const Carriers& all, const MethodChoiceOptions& options) {
+        const std::size_t n = data.incidences.size();
+        if (n < 3) return;
+        for (std::size_t g = 1; g + 1 < n; ++g) {
+            add(between_, Trial::withoutIncidence(data, g, options.trial), all, options);
+        }
+        add(last_, Trial::withoutIncidence(data, n - 1, options.trial), all, options);
+        auto edge = Trial::withoutEdge(data, options.trial);
+        if (edge) add(edge_, std::move(*edge), all, options);
+    }
+
+    struct Errors {
+        std::vector<ProbeError> between, last, edge;
+        bool made = false;
+        bool anchored = true;
+    };
+    [[nodiscard]] Errors errorsOf(const Candidate& candidate, const SamplePrior* prior) const {
+        Errors errors;
+        errors.made = !between_.empty();
+        addErrors(errors.between, between_, candidate, prior, errors);
+        if (errors.made) addErrors(errors.last, last_, candidate, prior, errors);
+        bool made = errors.made;
+        if (errors.made) addErrors(errors.edge, edge_, candidate, prior, errors);
+        errors.made = made;  // a prior cannot be asked at the edge
+        return errors;
+    }
+
+private:
+    struct One {
+        Trial trial;
+        Carriers carriers;
+    };
+
+    static void add(std::vector<One>& list,
+                    Trial trial,
+                    const Carriers& all,
+                    const MethodChoiceOptions& options) {
+        CarrierFitOptions fit = options.fit;
+        fit.startedAt = &all;
+        Carriers carriers = fitCarriers(trial.seen(), trial.groups(), fit);
+        list.push_back({std::move(trial), std::move(carriers)});
+    }
+
+    static void addErrors(std::vector<ProbeError>& to,
+                          const std::vector<One>& trials,
+                          const Candidate& candidate,
+                          const SamplePrior* prior,
+                          Errors& errors) {
+        for (const One& one : trials) {
+            const Method method = candidate.make({.data = one.trial.seen(),
+                                                  .groups = one.trial.groups(),
+                                                  .without = one.trial.without(),
+                                                  .whole = one.trial.without().has_value(),
+                                                  .carriers = one.carriers,
+                                                  .prior = prior});
+            errors.made = errors.made && method != nullptr;
+            if (!method) return;
+            errors.anchored = method->anchored();
+            const std::vector<ProbeError> own = one.trial.errorsOf(*method);
+            to.insert(to.end(), own.begin(), own.end());
+        }
+    }
+
+    std::vector<One> between_, last_, edge_;
+};
+
+template <class Wanted>
+double rootOf(const std::vector<ProbeError>& errors, const Wanted& wanted) {
+    double sum = 0;
+    double count = 0;
+    for (const ProbeError& error : errors) {
+        if (!wanted(error)) continue;
+        sum += error.squared;
+        ++count;
+    }
+    return count > 0 ? std::sqrt(std::max(0.0, sum) / count) : 0;
+}
+
+MethodScore scoreOf(const std::string& name, const Trials::Errors& errors) {
+    const auto even = [](const ProbeError& error) { return error.even; };
+    const auto lobe = [](const ProbeError& error) { return error.lobe; };
+    MethodScore score{.name = name,
+                      .hemisphere = rootOf(errors.between, even),
+                      .lobe = rootOf(errors.between, lobe),
+                      .beyond = {}};
+    if (errors.last.empty()) return score;
+    const double last = rootOf(errors.last, even);
+    // Where the edge cannot be asked, as if it were as wrong.
+    score.beyond = std::hypot(last, errors.edge.empty() ? last : rootOf(errors.edge, even));
+    return score;
+}
+
+ErrorModel modelOf(const Trials::Errors& errors) {
+    ErrorModel model(errors.anchored, errors.between);
+    model.learnBeyondIncidence(errors.last);
+    model.learnEdge(errors.edge);
+    return model;
+}
+
+/// The name of the carrier that fits the data best.
+std::optional<std::string> bestByChiSquare(const BrdfData& data, const Carriers& carriers) {
+    std::optional<std::string> best;
+    double least = 0;
+    for (const auto& [name, carrier] : carriers) {
+        double sum = 0;
+        for (const FitRow& row : data.rows) {
+            const LedBands model = carrier.family->f(carrier.point, data.nodesOf(row));
+            for (std::size_t b = 0; b < data.bandsUsed(); ++b) {
+                const double z = (row.f[b] - model.value[b]) / data.uOf(row, b);
+                if (!std::isnan(z)) sum += z * z;
+            }
+        }
+        if (best && sum >= least) continue;
+        best = name;
+        least = sum;
+    }
+    return best;
+}
+
+/// Made for angles beyond what was measured: the others only stay at the edge's value.
+bool forBeyond(const std::string& name) { return name.rfind("carried-cubic:", 0) != 0; }
+
+}  // namespace
+
+std::vector<std::string> methodNames() {
+    std::vector<std::string> names;
+    for (const Candidate& candidate : candidates()) names.push_back(candidate.name);
+    return names;
+}
+
+Result<Method> methodNamed(const std::string& name,
+                           const BrdfData& data,
+                           const Carriers& carriers,
+                           const SamplePrior* prior) {
+    const std::vector<bool> all(data.incidences.size(), true);
+    for (const Candidate& candidate : candidates()) {
+        if (candidate.name != name) continue;
+        Method method = candidate.make({.data = data,
+                                        .groups = all,
+                                        .without = {},
+                                        .whole = true,
+                                        .carriers = carriers,
+                                        .prior = prior});
+        if (method) return method;
+        return Error{ErrorKind::Usage,
+                     "estimator '" + name + "' cannot be made of this sample: " +
+                         (name == "prior" ? "it is unlike the prior's library"
+                                          : "its model could not be fitted")};
+    }
+    std::string known;
+    for (const std::string& one : methodNames()) known += (known.empty() ? "" : ", ") + one;
+    return Error{ErrorKind::Usage, "unknown estimator '" + name + "'; known: " + known};
+}
+
+MethodChoice chooseMethod(const BrdfData& data,
+                          const SamplePrior* prior,
+                          const MethodChoiceOptions& options) {
+    const std::vector<bool> all(data.incidences.size(), true);
+    MethodChoice choice;
+    choice.carriers = fitCarriers(data, all, options.fit);
+    const Trials trials(data, choice.carriers, options);
+    std::vector<Trials::Errors> errors;
+    std::optional<std::size_t> between;
+    std::optional<std::size_t> beyond;
+    for (const Candidate& candidate : candidates()) {
+        Trials::Errors own = trials.errorsOf(candidate, prior);
+        if (!own.made) continue;
+        choice.scores.push_back(scoreOf(candidate.name, own));
+        errors.push_back(std::move(own));
+        const std::size_t last = choice.scores.size() - 1;
+        const MethodScore& score = choice.scores.back();
+        if (!between || score.between() < choice.scores[*between].between()) between = last;
+        if (!score.beyond || !forBeyond(score.name)) continue;
+        if (!beyond || *score.beyond < *choice.scores[*beyond].beyond) beyond = last;
+    }
+    const auto made = [&](const std::string& name) {
+        auto method = methodNamed(name, data, choice.carriers, prior);
+        return method ? *method : nullptr;
+    };
+    if (between) {
+        choice.between = {made(choice.scores[*between].name), modelOf(errors[*between]), true};
+        choice.beyond = {made(choice.scores[*beyond].name), modelOf(errors[*beyond]), true};
+    } else {
+        const auto best = bestByChiSquare(data, choice.carriers);
+        choice.between.method = made(best ? "carried:" + *best : "specular-log");
+        choice.beyond = choice.between;
+    }
+    std::stable_sort(
+        choice.scores.begin(),
+        choice.scores.end(),
+        [](const MethodScore& a, const MethodScore& b) { return a.between() < b.between(); });
+    return choice;
+}
+
+}  // namespace gonio::proc

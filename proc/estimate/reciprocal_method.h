@@ -1,0 +1,31 @@
+#pragma once
+// A method asked both ways: at (wi, wo) and, as f is the same with light and view exchanged, at (wo,
+// wi). What was measured at 20 and 40 degrees then answers exactly wherever theta_o is one of
+// these, and beyond the last incidence wherever theta_o lies within. The two are weighted by how far
+// each reaches beyond what was measured:
+//   w = 1 / (between^2 + (degrees beyond the incidences / 5)^2 + (steps / 3)^2 + 1e-6),
+// so that at an incidence that was measured its own values stand to 1e-6. A method that is not
+// anchored is reciprocal by itself and is asked once.
+
+#include <memory>
+
+#include "proc/estimate/coverage.h"
+#include "proc/estimate/incidence_method.h"
+
+namespace gonio::proc {
+
+/// Squared reach as a weight's denominator; see above.
+[[nodiscard]] double distanceOf(const Reach& reach);
+
+struct ReciprocalAnswer {
+    MethodAnswer value;
+    Reach reach;           ///< of the two ways, as they are weighted
+    double exchanged = 0;  ///< weight of the exchanged pair, 0..1
+};
+
+/// Any pair above the horizon.
+[[nodiscard]] ReciprocalAnswer reciprocalAnswer(const IncidenceMethod& method,
+                                                const Coverage& coverage,
+                                                const LightView& pair);
+
+}  // namespace gonio::proc

@@ -1,0 +1,155 @@
+#include "proc/estimate/trial.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "proc/core/parallel.h"
+#include "proc/estimate/reciprocal_method.h"
+#include "proc/fit/thinned_rows.h"
+
+namespace gonio::proc {
+namespace {
+
+Direction directionOf(const Vec<double>& v) {
+    return Direction::fromVector({v.x, v.y, v.z}).value_or(Direction());
+}
+
+LightView viewOf(const WeightedNode& node) {
+    return {.in = directionOf(node.pair.in), .out = directionOf(node.pair.out)};
+}
+
+Radians fromMirror(const BrdfData& data, const FitRow& row) {
+    const LightView pair = viewOf(data.nodesOf(row).front());
+    return angleBetween({.in = mirrorOf(pair.in), .out = pair.out});
+}
+
+/// Mean over the row's nodes.
+struct RowAnswer {
+    LedBands f;
+    Reach reach;
+};
+
+RowAnswer rowAnswer(const IncidenceMethod& method,
+                    const Coverage& coverage,
+                    std::span<const WeightedNode> nodes) {
+    RowAnswer mean;
+    for (const WeightedNode& node : nodes) {
+        const ReciprocalAnswer one = reciprocalAnswer(method, coverage, viewOf(node));
+        mean.f = mean.f + one.value.f * node.weight;
+        mean.reach.between += node.weight * one.reach.between;
+        mean.reach.steps += node.weight * one.reach.steps;
+        mean.reach.beyondIncidence =
+            mean.reach.beyondIncidence + one.reach.beyondIncidence * node.weight;
+    }
+    return mean;
+}
+
+/// Relative to f, less its noise; NaN where there is no value.
+double squaredError(const BrdfData& data, const FitRow& row, std::size_t band, double answer) {
+    constexpr double kFloor = 1e-5;  // 1/sr: what the rig cannot tell from nothing
+    const double f = row.f[band];
+    const double u = data.uOf(row, band);
+    const double off = answer - f;
+    return (off * off - u * u) / (f * f + kFloor * kFloor);
+}
+
+BrdfData upTo(const BrdfData& data, double leastCosine) {
+    std::vector<std::uint32_t> rows;
+    for (std::size_t i = 0; i < data.rows.size(); ++i) {
+        if (data.rows[i].cosThetaO >= leastCosine) rows.push_back(static_cast<std::uint32_t>(i));
+    }
+    return withRows(data, rows);
+}
+
+std::vector<bool> allBut(std::size_t groups, std::optional<std::size_t> without) {
+    std::vector<bool> seen(groups, true);
+    if (without) seen[*without] = false;
+    return seen;
+}
+
+}  // namespace
+
+Trial::Trial(const BrdfData& data, std::optional<BrdfData> inner, std::vector<bool> groups)
+    : data_(&data),
+      inner_(std::move(inner)),
+      groups_(std::move(groups)),
+      coverage_(seen(), groups_) {}
+
+Trial Trial::withoutIncidence(const BrdfData& data,
+                              std::size_t group,
+                              const TrialOptions& options) {
+    Trial trial(data, std::nullopt, allBut(data.incidences.size(), group));
+    trial.without_ = group;
+    trial.addProbes(group, std::numeric_limits<double>::infinity(), options);
+    return trial;
+}
+
+std::optional<Trial> Trial::withoutEdge(const BrdfData& data, const TrialOptions& options) {
+    constexpr double kLeftOutDeg = 15;
+    constexpr double kLeastLeftDeg = 20;
+    double least = 1;
+    for (const FitRow& row : data.rows) least = std::min(least, row.cosThetaO);
+    const double edgeDeg = std::acos(least) * 180 / kPi - kLeftOutDeg;
+    if (edgeDeg < kLeastLeftDeg) return std::nullopt;
+    const double cosine = cos(Radians::fromDegrees(edgeDeg));
+    const std::size_t groups = data.incidences.size();
+    Trial trial(data, upTo(data, cosine), allBut(groups, std::nullopt));
+    for (std::size_t g = 0; g < groups; ++g) trial.addProbes(g, cosine, options);
+    return trial;
+}
+
+void Trial::addProbes(std::size_t group, double mostCosine, const TrialOptions& options) {
+    std::vector<std::uint32_t> rows;
+    for (std::size_t i = 0; i < data_->rows.size(); ++i) {
+        const FitRow& row = data_->rows[i];
+        if (row.group == group && row.cosThetaO < mostCosine) {
+            rows.push_back(static_cast<std::uint32_t>(i));
+        }
+    }
+    std::vector<std::pair<double, std::uint32_t>> others;
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+        if (k % options.stride == 0) {
+            probes_.push_back({rows[k], true});
+        } else {
+            others.emplace_back(fromMirror(*data_, data_->rows[rows[k]]).value(), rows[k]);
+        }
+    }
+    std::sort(others.begin(), others.end());
+    const std::size_t near = std::min(options.lobeRows, others.size());
+    for (std::size_t k = 0; k < near; ++k) probes_.push_back({others[k].second, false});
+}
+
+std::vector<ProbeError> Trial::errorsOf(const IncidenceMethod& method) const {
+    std::vector<RowAnswer> answers(probes_.size());
+    parallelFor(probes_.size(), [&](IndexRange range) {
+        for (std::size_t i = range.begin; i < range.end; ++i) {
+            answers[i] =
+                rowAnswer(method, coverage_, data_->nodesOf(data_->rows[probes_[i].row]));
+        }
+    });
+    std::vector<std::array<double, 3>> peaks(data_->incidences.size(), {0, 0, 0});
+    for (const Probe& probe : probes_) {
+        const FitRow& row = data_->rows[probe.row];
+        for (std::size_t b = 0; b < 3; ++b) {
+            if (row.f[b] > peaks[row.group][b]) peaks[row.group][b] = row.f[b];
+        }
+    }
+    std::vector<ProbeError> errors;
+    for (std::size_t i = 0; i < probes_.size(); ++i) {
+        const FitRow& row = data_->rows[probes_[i].row];
+        const Radians away = fromMirror(*data_, row);
+        for (std::size_t b = 0; b < data_->bandsUsed(); ++b) {
+            const double squared = squaredError(*data_, row, b, answers[i].f.value[b]);
+            if (std::isnan(squared)) continue;
+            errors.push_back({.squared = squared,
+                              .reach = answers[i].reach,
+                              .fromMirror = away,
+                              .even = probes_[i].even,
+                              .lobe = row.f[b] > 0.1 * peaks[row.group][b]});
+        }
+    }
+    return errors;
+}
+
+}  // namespace gonio::proc
