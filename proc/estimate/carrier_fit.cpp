@@ -26,12 +26,13 @@ std::optional<Carrier> fitOne(const std::string& name,
                               const CarrierFitOptions& options) {
     const Result<const Family*> family = familyNamed(name);
     if (!family) return std::nullopt;
-    ModelFitOptions how{.heldOutRows = 0};
-    how.tolerance = 1e-10;
+    ModelFitOptions how{.startRows = 200,
+                        .heldOutRows = 0,
+                        .maxIterations = options.maxIterations,
+                        .tolerance = options.tolerance};
     if (options.startedAt != nullptr) {
         const auto start = options.startedAt->find(name);
         if (start != options.startedAt->end()) how.start = start->second.point;
-        how.tolerance = 1e-8;
     }
     const ModelFit fit = fitModel(**family, data, how);
     if (!fit.usable()) return std::nullopt;

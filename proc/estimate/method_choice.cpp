@@ -43,9 +43,9 @@ void addFixed(std::vector<Candidate>& list) {
                              .curve = IncidenceCurve::CatmullRom}));
 }
 
-Candidate carried(const std::string& prefix, const std::string& family, IncidenceCurve curve) {
-    const std::string name = prefix + family;
-    return {name, [name, family, curve](const View& view) -> Method {
+Candidate carried(const std::string& family) {
+    const std::string name = "carried:" + family;
+    return {name, [name, family](const View& view) -> Method {
                 const auto found = view.carriers.find(family);
                 if (found == view.carriers.end()) return nullptr;
                 return sheetMethod(view.data,
@@ -53,7 +53,6 @@ Candidate carried(const std::string& prefix, const std::string& family, Incidenc
                                    {.name = name,
                                     .frame = IncidenceFrame::HalfVector,
                                     .quantity = SheetQuantity::RatioToModel,
-                                    .curve = curve,
                                     .carrier = found->second});
             }};
 }
@@ -64,8 +63,7 @@ void addOfFamily(std::vector<Candidate>& list, const std::string& family) {
                         if (found == view.carriers.end()) return nullptr;
                         return modelMethod(found->second);
                     }});
-    list.push_back(carried("carried:", family, IncidenceCurve::Linear));
-    list.push_back(carried("carried-cubic:", family, IncidenceCurve::CatmullRom));
+    list.push_back(carried(family));
 }
 
 const std::vector<Candidate>& candidates() {
@@ -87,7 +85,7 @@ class Trials {
 public:
     Trials(const BrdfData& data, const Carriers& all, const MethodChoiceOptions& options) {
         const std::size_t n = data.incidences.size();
-        if (n < 3) return;
+        if (n < 3 || !options.learn) return;
         for (std::size_t g = 1; g + 1 < n; ++g) {
             add(between_, Trial::withoutIncidence(data, g, options.trial), all, options);
         }
@@ -204,9 +202,6 @@ std::optional<std::string> bestByChiSquare(const BrdfData& data, const Carriers&
     return best;
 }
 
-/// Made for angles beyond what was measured: the others only stay at the edge's value.
-bool forBeyond(const std::string& name) { return name.rfind("carried-cubic:", 0) != 0; }
-
 }  // namespace
 
 std::vector<std::string> methodNames() {
@@ -250,6 +245,7 @@ MethodChoice chooseMethod(const BrdfData& data,
     std::optional<std::size_t> between;
     std::optional<std::size_t> beyond;
     for (const Candidate& candidate : candidates()) {
+        if (!options.only.empty() && candidate.name != options.only) continue;
         Trials::Errors own = trials.errorsOf(candidate, prior);
         if (!own.made) continue;
         choice.scores.push_back(scoreOf(candidate.name, own));
@@ -257,7 +253,7 @@ MethodChoice chooseMethod(const BrdfData& data,
         const std::size_t last = choice.scores.size() - 1;
         const MethodScore& score = choice.scores.back();
         if (!between || score.between() < choice.scores[*between].between()) between = last;
-        if (!score.beyond || !forBeyond(score.name)) continue;
+        if (!score.beyond) continue;
         if (!beyond || *score.beyond < *choice.scores[*beyond].beyond) beyond = last;
     }
     const auto made = [&](const std::string& name) {
@@ -269,7 +265,8 @@ MethodChoice chooseMethod(const BrdfData& data,
         choice.beyond = {made(choice.scores[*beyond].name), modelOf(errors[*beyond]), true};
     } else {
         const auto best = bestByChiSquare(data, choice.carriers);
-        choice.between.method = made(best ? "carried:" + *best : "specular-log");
+        const std::string standard = best ? "carried:" + *best : "specular-log";
+        choice.between.method = made(options.only.empty() ? standard : options.only);
         choice.beyond = choice.between;
     }
     std::stable_sort(

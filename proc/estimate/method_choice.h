@@ -5,7 +5,7 @@
 // for it, the one that predicts best the last incidence and the outermost 15 degrees of theta_o when
 // these are left out. What both were wrong by says how wrong they may be elsewhere (error_model.h).
 //
-// Candidates: log interpolation in specular-relative, direction-cosine and half-vector frames, also
+// Candidates: log interpolation in specular-relative, direction-cosine and half-vector frames, and
 // cubic; the fitted model of each carrier family, alone and carrying the ratio of the data to it;
 // the prior's posterior where its gate passes.
 //
@@ -51,6 +51,8 @@ struct MethodChoice {
 struct MethodChoiceOptions {
     CarrierFitOptions fit;
     TrialOptions trial;
+    bool learn = true;  ///< leave parts out; else as with fewer than three incidences
+    std::string only;   ///< a name: no other is asked; empty: all
 };
 
 /// Names a candidate makes, in the order of the list above.
@@ -62,7 +64,8 @@ struct MethodChoiceOptions {
                                                                          const Carriers& carriers,
                                                                          const SamplePrior* prior);
 
-/// `prior`: null where there is none. The data must outlive the call only.
+/// `prior`: null where there is none. The data must outlive the call only. Where `only` cannot be
+/// made, the methods are null.
 [[nodiscard]] MethodChoice chooseMethod(const BrdfData& data,
                                         const SamplePrior* prior,
                                         const MethodChoiceOptions& options = {});

@@ -1,5 +1,6 @@
 #include "proc/estimate/reciprocal_method.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace gonio::proc {
@@ -11,12 +12,16 @@ Reach blended(const Reach& a, const Reach& b, double t) {
             .steps = (1 - t) * a.steps + t * b.steps};
 }
 
+/// The denominator of a way's weight.
+double distanceOf(const Reach& reach) {
+    const double off = beyond(reach);
+    return reach.between * reach.between + off * off + 1e-6;
+}
+
 }  // namespace
 
-double distanceOf(const Reach& reach) {
-    const double beyond = reach.beyondIncidence.degrees() / 5;
-    const double steps = reach.steps / 3;
-    return reach.between * reach.between + beyond * beyond + steps * steps + 1e-6;
+double beyond(const Reach& reach) {
+    return std::hypot(reach.beyondIncidence.degrees() / 5, reach.steps / 3);
 }
 
 ReciprocalAnswer reciprocalAnswer(const IncidenceMethod& method,
@@ -29,8 +34,10 @@ ReciprocalAnswer reciprocalAnswer(const IncidenceMethod& method,
     const double a = 1 / distanceOf(near);
     const double b = 1 / distanceOf(far);
     const double t = b / (a + b);
-    ReciprocalAnswer answer{
-        .value = method.at(straight), .reach = blended(near, far, t), .exchanged = t};
+    ReciprocalAnswer answer{.value = method.at(straight),
+                            .reach = blended(near, far, t),
+                            .exchanged = t,
+                            .off = std::min(beyond(near), beyond(far))};
     if (!method.anchored()) return answer;
     const MethodAnswer one = answer.value;
     const MethodAnswer other = method.at(exchanged);

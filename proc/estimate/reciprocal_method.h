@@ -14,13 +14,14 @@
 
 namespace gonio::proc {
 
-/// Squared reach as a weight's denominator; see above.
-[[nodiscard]] double distanceOf(const Reach& reach);
+/// Beyond what was measured, in units of 5 degrees of incidence and of 3 layers of cells.
+[[nodiscard]] double beyond(const Reach& reach);
 
 struct ReciprocalAnswer {
     MethodAnswer value;
     Reach reach;           ///< of the two ways, as they are weighted
     double exchanged = 0;  ///< weight of the exchanged pair, 0..1
+    double off = 0;        ///< how far the nearer way is beyond what was measured; see beyond()
 };
 
 /// Any pair above the horizon.

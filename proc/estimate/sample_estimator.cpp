@@ -1,0 +1,201 @@
+#include "proc/estimate/sample_estimator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "proc/estimate/reciprocal_method.h"
+#include "proc/optics/cell_grid.h"
+
+namespace gonio::proc {
+namespace {
+
+constexpr std::size_t kPriorMaterials = 2000;
+constexpr std::size_t kPriorFunctions = 200;
+
+Flags correctionsOf(const SampleSet& set) {
+    Flags any;
+    for (const LedTable& led : set.leds) {
+        for (const CellSamples& cells : led.bands) {
+            for (const Flags flags : cells.flags) any = any | flags;
+        }
+    }
+    Flags corrections;
+    for (const Flag flag : {Flag::GlareCorrected, Flag::TiltCorrected, Flag::DriftCorrected}) {
+        if (any.has(flag)) corrections.set(flag);
+    }
+    return corrections;
+}
+
+enum class Kind {
+    Sheets,
+    Carried,
+    Model,
+    Prior
+};
+
+Kind kindOf(const IncidenceMethod& method) {
+    if (method.ownError()) return Kind::Prior;
+    if (!method.anchored()) return Kind::Model;
+    return method.name().rfind("carried:", 0) == 0 ? Kind::Carried : Kind::Sheets;
+}
+
+/// Where an answer between the incidences comes from.
+void labelBetween(Answer& answer, Kind kind, double exchanged) {
+    if (kind == Kind::Prior) {
+        answer.source = Source::Prior;
+        answer.flags.set(Flag::Prior);
+        return;
+    }
+    if (kind == Kind::Model || kind == Kind::Carried) answer.flags.set(Flag::Model);
+    if (kind == Kind::Model) {
+        answer.source = Source::Model;
+        return;
+    }
+    answer.flags.set(Flag::Interpolated);
+    const bool mostlyExchanged = exchanged > 0.5;
+    if (mostlyExchanged) answer.flags.set(Flag::Reciprocity);
+    answer.source = mostlyExchanged ? Source::Reciprocity : Source::Interpolated;
+}
+
+void labelBeyond(Answer& answer, Kind kind) {
+    answer.flags.set(Flag::Extrapolated);
+    switch (kind) {
+        case Kind::Sheets: answer.source = Source::Extrapolated; break;
+        case Kind::Carried:
+        case Kind::Model:
+            answer.source = Source::Model;
+            answer.flags.set(Flag::Model);
+            break;
+        case Kind::Prior:
+            answer.source = Source::Prior;
+            answer.flags.set(Flag::Prior);
+            break;
+    }
+}
+
+/// One method's part of an answer.
+struct Part {
+    LedBands f, uRandom, uSystematic;
+    double exchanged = 0;
+    double off = 0;
+};
+
+Part partOf(const ChosenMethod& chosen, const Coverage& coverage, const LightView& pair) {
+    const IncidenceMethod& method = *chosen.method;
+    const ReciprocalAnswer got = reciprocalAnswer(method, coverage, pair);
+    Part part{got.value.f, got.value.uRandom, got.value.uSystematic, got.exchanged, got.off};
+    const Radians away = angleBetween({.in = mirrorOf(pair.in), .out = pair.out});
+    const double relative =
+        method.ownError() || !chosen.errorsKnown ? 0 : chosen.errors.at(got.reach, away);
+    for (const Band band : kBands) {
+        double own = relative * std::abs(part.f[band]);
+        // What a function of all data is wrong by, it is wrong by everywhere alike.
+        if (!method.anchored()) own = std::hypot(own, std::exchange(part.uRandom[band], 0.0));
+        part.uSystematic[band] = std::hypot(part.uSystematic[band], own);
+    }
+    return part;
+}
+
+/// 0 to 1 with a slope of 0 at both ends.
+double smooth(double x) { return x * x * (3 - 2 * x); }
+
+}  // namespace
+
+std::shared_ptr<const PriorBasis> standardPrior() {
+    static const std::shared_ptr<const PriorBasis> basis = [] {
+        auto made = PriorBasis::over(PriorLibrary::standard(kPriorMaterials), kPriorFunctions);
+        return made ? std::make_shared<const PriorBasis>(std::move(*made)) : nullptr;
+    }();
+    return basis;
+}
+
+SampleEstimator::SampleEstimator(SampleSet set, SampleEstimatorOptions options)
+    : lookup_(std::move(set)),
+      options_(std::move(options)),
+      data_(fitDataOf(lookup_.set())),
+      coverage_(data_, std::vector<bool>(data_.incidences.size(), true)),
+      corrections_(correctionsOf(lookup_.set())) {}
+
+Result<std::unique_ptr<const SampleEstimator>> SampleEstimator::over(
+    SampleSet set, SampleEstimatorOptions options) {
+    const std::string name = set.info.name;
+    std::unique_ptr<const SampleEstimator> made(
+        new SampleEstimator(std::move(set), std::move(options)));
+    if (made->data_.rows.empty()) {
+        return Error{ErrorKind::Quality,
+                     "estimate '" + name + "': no cell of it can be used: all are missing, "
+                     "saturated or blocked"};
+    }
+    const std::string& wanted = made->options_.method;
+    if (wanted == "auto") return made;
+    const std::vector<std::string> known = methodNames();
+    if (std::find(known.begin(), known.end(), wanted) == known.end()) {
+        return methodNamed(wanted, made->data_, {}, nullptr).error();
+    }
+    if (!made->choice().between.method) {
+        return methodNamed(wanted, made->data_, made->choice_.carriers, made->prior()).error();
+    }
+    return made;
+}
+
+void SampleEstimator::choose() const {
+    const std::vector<bool> all(data_.incidences.size(), true);
+    const bool draft = options_.effort == Effort::Draft;
+    if (options_.prior && (!draft || options_.method == "prior")) {
+        samplePrior_ = std::make_unique<const SamplePrior>(options_.prior, data_);
+    }
+    MethodChoiceOptions how;
+    how.learn = !draft;
+    how.only = options_.method == "auto" ? "" : options_.method;
+    if (options_.effort == Effort::Reference) how.fit.rows = 6000;
+    choice_ = chooseMethod(data_, samplePrior_.get(), how);
+}
+
+const MethodChoice& SampleEstimator::choice() const {
+    std::call_once(chosen_, [this] { choose(); });
+    return choice_;
+}
+
+const SamplePrior* SampleEstimator::prior() const {
+    (void)choice();
+    return samplePrior_.get();
+}
+
+Answer SampleEstimator::answer(const LightView& pair) const {
+    if (!pair.in.aboveHorizon() || !pair.out.aboveHorizon()) {
+        return Answer::none({Flag::BelowHorizon}, Source::Interpolated);
+    }
+    const Answer measured = lookup_.answer(pair);
+    const bool usable = !measured.flags.has(Flag::Saturated) && !measured.flags.has(Flag::Blocked);
+    if (measured.source == Source::Measured && measured.present() && usable) return measured;
+    return estimate(pair);
+}
+
+Answer SampleEstimator::estimate(const LightView& pair) const {
+    const MethodChoice& chosen = choice();
+    const Part inside = partOf(chosen.between, coverage_, pair);
+    Answer answer;
+    answer.flags = corrections_;
+    answer.f = inside.f;
+    answer.uRandom = inside.uRandom;
+    answer.uSystematic = inside.uSystematic;
+    const double share = smooth(std::min(1.0, inside.off));
+    if (share < 0.5) labelBetween(answer, kindOf(*chosen.between.method), inside.exchanged);
+    if (share > 0) {
+        const Part outside = partOf(chosen.beyond, coverage_, pair);
+        for (const Band band : kBands) {
+            const auto blend = [&](double& to, double other) {
+                to = (1 - share) * to + share * other;
+            };
+            blend(answer.f[band], outside.f[band]);
+            blend((*answer.uRandom)[band], outside.uRandom[band]);
+            blend((*answer.uSystematic)[band], outside.uSystematic[band]);
+        }
+        if (share >= 0.5) labelBeyond(answer, kindOf(*chosen.beyond.method));
+        if (share < 0.5) answer.flags.set(Flag::Extrapolated);
+    }
+    return answer;
+}
+
+}  // namespace gonio::proc
