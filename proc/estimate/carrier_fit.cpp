@@ -59,7 +59,8 @@ Carriers fitCarriers(const BrdfData& data,
                      const std::vector<bool>& groups,
                      const CarrierFitOptions& options) {
     const BrdfData few = withRows(data, thinnedRows(data, groups, options.rows));
-    const std::vector<std::string>& names = carrierFamilies();
+    const std::vector<std::string>& names =
+        options.families.empty() ? carrierFamilies() : options.families;
     std::vector<std::optional<Carrier>> fits(names.size());
     parallelFor(names.size(), [&](IndexRange range) {
         for (std::size_t i = range.begin; i < range.end; ++i) {
@@ -71,6 +72,25 @@ Carriers fitCarriers(const BrdfData& data,
         if (fits[i]) carriers[names[i]] = std::move(*fits[i]);
     }
     return carriers;
+}
+
+std::optional<std::string> bestByChiSquare(const BrdfData& data, const Carriers& carriers) {
+    std::optional<std::string> best;
+    double least = 0;
+    for (const auto& [name, carrier] : carriers) {
+        double sum = 0;
+        for (const FitRow& row : data.rows) {
+            const LedBands model = carrier.family->f(carrier.point, data.nodesOf(row));
+            for (std::size_t b = 0; b < data.bandsUsed(); ++b) {
+                const double z = (row.f[b] - model.value[b]) / data.uOf(row, b);
+                if (!std::isnan(z)) sum += z * z;
+            }
+        }
+        if (best && sum >= least) continue;
+        best = name;
+        least = sum;
+    }
+    return best;
 }
 
 }  // namespace gonio::proc

@@ -182,26 +182,6 @@ ErrorModel modelOf(const Trials::Errors& errors) {
     return model;
 }
 
-/// The name of the carrier that fits the data best.
-std::optional<std::string> bestByChiSquare(const BrdfData& data, const Carriers& carriers) {
-    std::optional<std::string> best;
-    double least = 0;
-    for (const auto& [name, carrier] : carriers) {
-        double sum = 0;
-        for (const FitRow& row : data.rows) {
-            const LedBands model = carrier.family->f(carrier.point, data.nodesOf(row));
-            for (std::size_t b = 0; b < data.bandsUsed(); ++b) {
-                const double z = (row.f[b] - model.value[b]) / data.uOf(row, b);
-                if (!std::isnan(z)) sum += z * z;
-            }
-        }
-        if (best && sum >= least) continue;
-        best = name;
-        least = sum;
-    }
-    return best;
-}
-
 }  // namespace
 
 std::vector<std::string> methodNames() {
