@@ -102,22 +102,6 @@ NeighbourCost costOf(const Stopwatch& watch,
     return found > 0 ? cost : NeighbourCost{.samples = count};
 }
 
-/// Slope of ln value over ln samples.
-template <class Value>
-double exponentOf(const std::vector<NeighbourCost>& rows, const Value& value) {
-    double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
-    for (const NeighbourCost& row : rows) {
-        const double x = std::log(static_cast<double>(row.samples));
-        const double y = std::log(value(row));
-        n += 1;
-        sx += x;
-        sy += y;
-        sxx += x * x;
-        sxy += x * y;
-    }
-    return (n * sxy - sx * sy) / (n * sxx - sx * sx);
-}
-
 }  // namespace
 
 std::vector<ScatteredSample> rigLikeSamples(std::size_t count, std::uint64_t seed) {
@@ -143,13 +127,18 @@ std::vector<NeighbourCost> studyNeighbours(const Stopwatch& watch,
     return rows;
 }
 
-NeighbourGrowth growthOf(const std::vector<NeighbourCost>& rows) {
-    return {
-        .build = exponentOf(rows, [](const NeighbourCost& r) { return r.build.count(); }),
-        .query = exponentOf(rows, [](const NeighbourCost& r) { return r.query.count(); }),
-        .bruteForce = exponentOf(rows, [](const NeighbourCost& r) { return r.bruteForce.count(); }),
-        .treeBytes = exponentOf(
-            rows, [](const NeighbourCost& r) { return static_cast<double>(r.treeBytes); })};
+double growthOf(const std::vector<NeighbourCost>& rows, const NeighbourValue& value) {
+    double sx = 0, sy = 0, sxx = 0, sxy = 0;
+    for (const NeighbourCost& row : rows) {
+        const double x = std::log(static_cast<double>(row.samples));
+        const double y = std::log(value(row));
+        sx += x;
+        sy += y;
+        sxx += x * x;
+        sxy += x * y;
+    }
+    const auto n = static_cast<double>(rows.size());
+    return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
 std::string neighbourCsv(const std::vector<NeighbourCost>& rows) {

@@ -36,11 +36,10 @@ struct NeighbourCost {
     std::size_t sampleBytes = 0;
 };
 
-/// y grows as n^exponent: the slope of the straight line through (ln n, ln y) by least squares.
-/// NaN of fewer than two sizes.
-struct NeighbourGrowth {
-    double build = 0, query = 0, bruteForce = 0, treeBytes = 0;
-};
+/// The exponent of the power of the number of samples as which a value grows: the slope of the
+/// straight line through (ln n, ln value) by least squares. NaN of fewer than two sizes.
+using NeighbourValue = std::function<double(const NeighbourCost&)>;
+[[nodiscard]] double growthOf(const std::vector<NeighbourCost>& rows, const NeighbourValue& value);
 
 /// `count` samples at the pairs described above.
 [[nodiscard]] std::vector<ScatteredSample> rigLikeSamples(std::size_t count, std::uint64_t seed);
@@ -52,8 +51,6 @@ using NeighbourProgress = std::function<void(double)>;
 [[nodiscard]] std::vector<NeighbourCost> studyNeighbours(const Stopwatch& watch,
                                                          const NeighbourStudyOptions& options,
                                                          const NeighbourProgress& progress = {});
-
-[[nodiscard]] NeighbourGrowth growthOf(const std::vector<NeighbourCost>& rows);
 
 /// Columns samples, build_seconds, query_seconds, brute_force_seconds, tree_bytes, sample_bytes.
 [[nodiscard]] std::string neighbourCsv(const std::vector<NeighbourCost>& rows);
