@@ -6,6 +6,8 @@
 // Flags are those of all parts together, but for where a value came from: of these (measured,
 // interpolated, extrapolated) the answer has the one that it is given.
 
+#include <cstddef>
+
 #include "proc/core/scatterer.h"
 #include "proc/table/scattered_set.h"
 

@@ -10,6 +10,7 @@
 // answer at the edge: none beyond it.
 
 #include <memory>
+#include <utility>
 
 #include "proc/core/result.h"
 #include "proc/core/scatterer.h"

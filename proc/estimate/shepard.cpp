@@ -1,6 +1,9 @@
 #include "proc/estimate/shepard.h"
 
 #include <cmath>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "proc/estimate/answer_blend.h"
 

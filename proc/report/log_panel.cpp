@@ -1,6 +1,7 @@
 #include "proc/report/log_panel.h"
 
 #include <cmath>
+#include <string>
 
 #include "proc/core/number_text.h"
 

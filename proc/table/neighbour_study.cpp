@@ -1,5 +1,6 @@
 #include "proc/table/neighbour_study.h"
 
+#include <array>
 #include <cmath>
 #include <random>
 

@@ -15,8 +15,8 @@
 //
 // Each is a metric on the classes of equal pairs: 0 for equal pairs alone, with the triangle
 // inequality. At wi = n the azimuth of wi does not exist and does not matter: the best turn is then
-// the one that lays wo on wo'. It is continuous there, which a distance of pairs turned to phi_i =
-// 0 is not.
+// the one that lays wo on wo'. It is continuous there, which a distance of pairs turned to
+// phi_i = 0 is not.
 
 #include <array>
 

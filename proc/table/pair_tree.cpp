@@ -1,6 +1,7 @@
 #include "proc/table/pair_tree.h"
 
 #include <nanoflann.hpp>
+#include <utility>
 
 namespace gonio::proc {
 namespace {

@@ -53,11 +53,9 @@ Result<SampleId> ScatteredSet::add(std::span<const ScatteredSample> samples) {
         }
     }
     const SampleId first = nextId_;
-    for (const ScatteredSample& sample : samples) {
-        samples_.push_back(sample);
-        ids_.push_back(nextId_++);
-        live_.push_back(1);
-    }
+    samples_.insert(samples_.end(), samples.begin(), samples.end());
+    live_.resize(samples_.size(), 1);
+    while (ids_.size() < samples_.size()) ids_.push_back(nextId_++);
     size_ += samples.size();
     rebuildIfDue();
     return first;

@@ -75,7 +75,8 @@ TEST(ScatteredOf, TakesEachDirectionOfATableOnce) {
     const auto made = scatteredOf(table(TableSymmetry::Asymmetrical, 360));
     ASSERT_TRUE(made);
     // At the normal: the pole and two rings of 8; radial 100 is below the horizon. At 30 degrees
-    // the same with one missing, and radial 100 above it towards the normal: at azimuths -45, 0, 45.
+    // the same with one missing, and radial 100 above it towards the normal: at azimuths -45,
+    // 0, 45.
     EXPECT_EQ(made->set.size(), 17U + 17U - 1U + 3U);
     EXPECT_EQ(made->leftOut, 1U);
     EXPECT_EQ(made->set.bandCount(), BandCount::One);
