@@ -31,6 +31,12 @@ struct CellSamples {
 
     [[nodiscard]] std::size_t size() const { return f.size(); }
     [[nodiscard]] bool present(std::size_t cell) const { return flags[cell].has(Flag::Measured); }
+    /// There is such a cell, and its value is good for estimates and fits: measured, and neither
+    /// saturated nor blocked nor below the horizon.
+    [[nodiscard]] bool usable(std::size_t cell) const {
+        return cell < flags.size() && present(cell) && !flags[cell].has(Flag::Saturated) &&
+               !flags[cell].has(Flag::Blocked) && !flags[cell].has(Flag::BelowHorizon);
+    }
     [[nodiscard]] Measured<double> at(std::size_t cell) const {
         return {f[cell], uRandom[cell], uSystematic[cell], flags[cell]};
     }

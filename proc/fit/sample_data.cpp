@@ -10,11 +10,6 @@
 namespace gonio::proc {
 namespace {
 
-bool usable(Flags flags) {
-    return flags.has(Flag::Measured) && !flags.has(Flag::Saturated) && !flags.has(Flag::Blocked) &&
-           !flags.has(Flag::BelowHorizon);
-}
-
 /// Gauss points per side of a cell, by its distance from the mirror direction.
 std::size_t nodesPerSide(Radians fromMirror) {
     if (fromMirror < 3_deg) return 4;
@@ -69,10 +64,8 @@ BrdfData fitDataOf(const SampleSet& set, const DataOptions& options) {
         maker.data().incidences.push_back(led.incidence);
         const Direction wi = lightAt(led.incidence);
         for (std::size_t cell = 0; cell < CellGrid::count(); ++cell) {
-            const auto present = [&](const CellSamples& cells) {
-                return cell < cells.size() && usable(cells.flags[cell]);
-            };
-            if (std::none_of(led.bands.begin(), led.bands.end(), present)) {
+            const auto usable = [&](const CellSamples& cells) { return cells.usable(cell); };
+            if (std::none_of(led.bands.begin(), led.bands.end(), usable)) {
                 maker.leaveOut();
                 continue;
             }
@@ -80,7 +73,7 @@ BrdfData fitDataOf(const SampleSet& set, const DataOptions& options) {
             row.group = group;
             for (std::size_t b = 0; b < 3; ++b) {
                 const CellSamples& cells = led.bands[b];
-                if (!present(cells)) continue;
+                if (!usable(cells)) continue;
                 row.f[b] = cells.f[cell];
                 const BudgetShare& share = maker.data().shared[l][b];
                 row.uRandom[b] = std::hypot(cells.uRandom[cell], share.cell * row.f[b]);

@@ -7,12 +7,6 @@
 namespace gonio::proc {
 namespace {
 
-/// A direction that stands in the table twice: the pole of an incidence, the last azimuth.
-bool repeats(const SpecularTable& table, const TableNode& node) {
-    const bool pole = table.radialDeg[node.radial] == 0 && node.azimuth > 0;
-    return pole || table.azimuthDeg[node.azimuth] - table.azimuthDeg.front() >= 360;
-}
-
 /// Half of the way to the neighbours on either side; at an end of the list to the one there is.
 double halfSteps(const std::vector<double>& values, std::size_t at) {
     double width = 0;
@@ -53,7 +47,7 @@ Result<BrdfData> fitDataOf(const SpecularTable& table, const DataOptions& option
         for (std::size_t a = 0; a < table.azimuthDeg.size(); ++a) {
             for (std::size_t r = 0; r < table.radialDeg.size(); ++r) {
                 const TableNode node{.rotation = 0, .incidence = i, .azimuth = a, .radial = r};
-                if (repeats(table, node)) continue;
+                if (table.repeatsDirection(node)) continue;
                 const LightView pair = table.pairAt(node);
                 if (!table.hasData(0, node) || !pair.in.aboveHorizon()) {
                     maker.leaveOut();

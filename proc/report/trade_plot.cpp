@@ -6,8 +6,7 @@
 #include <string_view>
 
 #include "proc/core/number_text.h"
-#include "proc/report/colour_ramp.h"
-#include "proc/report/svg.h"
+#include "proc/report/log_panel.h"
 
 namespace gonio::proc {
 namespace {
@@ -22,14 +21,12 @@ struct Axes {
     LogAxis seconds, percent;
 };
 
-/// One panel: where it stands, and its axes.
+/// One panel: seconds to the right, per cent upwards.
 struct Panel {
-    Point corner;
-    Axes axes;
+    LogPanel area;
 
     [[nodiscard]] Point at(double seconds, double relative) const {
-        return {corner.x + kWidth * axes.seconds.position(seconds),
-                corner.y + kHeight * (1 - axes.percent.position(kPercent * relative))};
+        return area.at({seconds, kPercent * relative});
     }
 };
 
@@ -65,41 +62,9 @@ Axes axesOf(const std::vector<TradeRow>& rows) {
             LogAxis::covering(kPercent * least, kPercent * most)};
 }
 
-std::string decadeLabel(int decade) { return shortest(std::pow(10.0, decade)); }
-
-void drawAxes(Svg& svg, const Panel& panel) {
-    const Stroke grid{.colour = "#ddd", .width = 0.7, .dash = ""};
-    const Stroke fine{.colour = "#f0f0f0", .width = 0.5, .dash = ""};
-    const auto& [corner, axes] = panel;
-    const auto vertical = [&, top = corner.y](double seconds, const Stroke& stroke) {
-        const double x = panel.at(seconds, 1).x;
-        svg.line({x, top}, {x, top + kHeight}, stroke);
-        return x;
-    };
-    const auto horizontal = [&, left = corner.x](double percent, const Stroke& stroke) {
-        const double y = panel.at(1, percent / kPercent).y;
-        svg.line({left, y}, {left + kWidth, y}, stroke);
-        return y;
-    };
-    for (int decade = axes.seconds.firstDecade; decade <= axes.seconds.lastDecade; ++decade) {
-        const double here = std::pow(10.0, decade);
-        for (int k = 2; k < 10 && decade < axes.seconds.lastDecade; ++k) vertical(k * here, fine);
-        const double x = vertical(here, grid);
-        svg.text({x, corner.y + kHeight + 15}, decadeLabel(decade), Anchor::Middle, 10);
-    }
-    for (int decade = axes.percent.firstDecade; decade <= axes.percent.lastDecade; ++decade) {
-        const double here = std::pow(10.0, decade);
-        for (int k = 2; k < 10 && decade < axes.percent.lastDecade; ++k) horizontal(k * here, fine);
-        const double y = horizontal(here, grid);
-        svg.text({corner.x - 6, y + 4}, decadeLabel(decade), Anchor::End, 10);
-    }
-    svg.text(
-        {corner.x + kWidth / 2, corner.y + kHeight + 30}, "seconds on the rig", Anchor::Middle, 10);
-}
-
 void drawPublished(Svg& svg, const Panel& panel) {
     const double x = panel.at(kMiniDiffSeconds.count(), 1).x;
-    const double top = panel.corner.y;
+    const double top = panel.area.corner.y;
     svg.line({x, top},
              {x, top + kHeight},
              {.colour = std::string(kPublishedColour), .width = 1, .dash = ""});
@@ -128,7 +93,7 @@ void drawLevels(Svg& svg, const Panel& panel, Rows rows, std::string_view colour
         const double seconds = row->seconds.total().count();
         total.push_back(panel.at(seconds, row->predicted.total.worst));
         random.push_back(panel.at(seconds, row->predicted.random.worst));
-        if (row->cramerRao.count() > std::pow(10.0, panel.axes.seconds.firstDecade))
+        if (row->cramerRao.count() > std::pow(10.0, panel.area.x.firstDecade))
             bound.push_back(panel.at(row->cramerRao.count(), row->predicted.random.worst));
     }
     const std::string ink(colour);
@@ -179,10 +144,10 @@ std::string tradePlot(const std::vector<TradeRow>& rows) {
     drawLegend(svg, levels);
     for (std::size_t row = 0; row < materials.size(); ++row) {
         for (std::size_t column = 0; column < rigs.size(); ++column) {
-            const Panel panel{{kLeft + static_cast<double>(column) * (kWidth + kGapX),
-                               kTop + static_cast<double>(row) * (kHeight + kGapY)},
-                              axes};
-            drawAxes(svg, panel);
+            const Point corner{kLeft + static_cast<double>(column) * (kWidth + kGapX),
+                               kTop + static_cast<double>(row) * (kHeight + kGapY)};
+            const Panel panel{{corner, {kWidth, kHeight}, axes.seconds, axes.percent}};
+            drawGrid(svg, panel.area, "seconds on the rig");
             drawPublished(svg, panel);
             Rows all;
             for (const int level : levels) {
@@ -196,7 +161,7 @@ std::string tradePlot(const std::vector<TradeRow>& rows) {
                 all.insert(all.end(), own.begin(), own.end());
             }
             drawFloor(svg, panel, all);
-            svg.text({panel.corner.x + kWidth / 2, panel.corner.y - 8},
+            svg.text({corner.x + kWidth / 2, corner.y - 8},
                      materials[row] + ", " + rigs[column],
                      Anchor::Middle);
         }

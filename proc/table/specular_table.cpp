@@ -46,4 +46,9 @@ bool SpecularTable::hasData(std::size_t plane, TableNode node) const {
     return f != 0 && !std::isnan(f) && canHoldData(node);
 }
 
+bool SpecularTable::repeatsDirection(TableNode node) const {
+    const bool pole = radialDeg[node.radial] == 0 && node.azimuth > 0;
+    return pole || azimuthDeg[node.azimuth] - azimuthDeg.front() >= 360;
+}
+
 }  // namespace gonio::proc

@@ -61,6 +61,9 @@ struct SpecularTable {
     /// Above the horizon by more than rounding; for BTDF the other side of the surface counts.
     [[nodiscard]] bool canHoldData(TableNode node) const;
     [[nodiscard]] bool hasData(std::size_t plane, TableNode node) const;
+    /// The node's direction stands in the table a second time: the pole of an incidence at another
+    /// azimuth than the first, or the azimuth of the first one after a full turn.
+    [[nodiscard]] bool repeatsDirection(TableNode node) const;
 };
 
 }  // namespace gonio::proc

@@ -1,0 +1,120 @@
+#include "proc/estimate/seed004.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <utility>
+
+#include "proc/estimate/clamp_extrapolator.h"
+#include "proc/estimate/linear_extrapolator.h"
+#include "proc/estimate/no_extrapolation.h"
+
+namespace gonio::proc {
+namespace {
+
+using Made = Result<std::unique_ptr<Scatterer>>;
+constexpr std::size_t kMostPlanes = 256;
+constexpr double kSameIncidence = 1e-6;  ///< radians
+
+constexpr std::array<std::pair<SeedInterpolator, std::string_view>, 3> kInterpolators{{
+    {SeedInterpolator::Shepard, "shepard"},
+    {SeedInterpolator::AxisLinear, "axis-linear"},
+    {SeedInterpolator::GridLinear, "grid-linear"},
+}};
+constexpr std::array<std::pair<SeedExtrapolator, std::string_view>, 5> kExtrapolators{{
+    {SeedExtrapolator::None, "none"},
+    {SeedExtrapolator::Linear, "linear"},
+    {SeedExtrapolator::Constant, "constant"},
+    {SeedExtrapolator::Bezier, "bezier"},
+    {SeedExtrapolator::Gradient, "gradient"},
+}};
+
+template <class Named>
+std::string_view nameIn(const Named& all, typename Named::value_type::first_type which) {
+    for (const auto& [value, name] : all) {
+        if (value == which) return name;
+    }
+    return "";
+}
+
+template <class Named>
+auto valueIn(const Named& all, std::string_view name)
+    -> std::optional<typename Named::value_type::first_type> {
+    for (const auto& [value, own] : all) {
+        if (own == name) return value;
+    }
+    return std::nullopt;
+}
+
+/// The different angles of incidence, ascending.
+std::vector<Radians> incidencesOf(const ScatteredSet& data) {
+    std::vector<Radians> all;
+    for (const SampleId id : data.ids()) all.push_back(data.find(id)->pair.in.theta());
+    std::sort(all.begin(), all.end());
+    const auto same = [](Radians a, Radians b) { return (b - a).value() < kSameIncidence; };
+    all.erase(std::unique(all.begin(), all.end(), same), all.end());
+    return all;
+}
+
+Made interpolator(const ScatteredSet& data, const Seed004Options& options, SeedInterpolator which) {
+    if (which == SeedInterpolator::Shepard) return makeShepard(data, options.shepard);
+    if (which == SeedInterpolator::AxisLinear) return makeAxisLinear(data, options.axisLinear);
+    if (options.gridFilledBy == SeedInterpolator::GridLinear) {
+        return Error{ErrorKind::Usage, "grid-linear: a grid cannot be filled by a grid"};
+    }
+    GridLinearOptions grid = options.gridLinear;
+    if (grid.incidences.empty()) grid.incidences = incidencesOf(data);
+    if (grid.incidences.size() > kMostPlanes) {
+        return Error{ErrorKind::Usage,
+                     "grid-linear: data of " + std::to_string(grid.incidences.size()) +
+                         " angles of incidence; say at which the planes shall stand"};
+    }
+    const Made inner = interpolator(data, options, options.gridFilledBy);
+    if (!inner) return inner.error();
+    return makeGridLinear(**inner, grid);
+}
+
+Made beyond(Made inner, const Seed004Options& options, const Beyond& edge) {
+    if (!inner) return inner;
+    const auto method =
+        edge.side == Side::Outgoing ? options.beyondOutgoing : options.beyondIncoming;
+    switch (method) {
+        case SeedExtrapolator::None: return makeNoExtrapolation(std::move(*inner), edge);
+        case SeedExtrapolator::Linear: return makeLinearExtrapolator(std::move(*inner), edge);
+        case SeedExtrapolator::Constant: return makeClampExtrapolator(std::move(*inner), edge);
+        case SeedExtrapolator::Bezier:
+            return makeBezierExtrapolator(std::move(*inner), edge, options.bezier);
+        case SeedExtrapolator::Gradient:
+            return makeGradientExtrapolator(std::move(*inner), edge, options.gradient);
+    }
+    return inner;
+}
+
+}  // namespace
+
+std::string_view name(SeedInterpolator interpolator) {
+    return nameIn(kInterpolators, interpolator);
+}
+
+std::optional<SeedInterpolator> seedInterpolatorNamed(std::string_view name) {
+    return valueIn(kInterpolators, name);
+}
+
+std::string_view name(SeedExtrapolator extrapolator) {
+    return nameIn(kExtrapolators, extrapolator);
+}
+
+std::optional<SeedExtrapolator> seedExtrapolatorNamed(std::string_view name) {
+    return valueIn(kExtrapolators, name);
+}
+
+Result<std::unique_ptr<Scatterer>> makeSeed004(const ScatteredSet& data,
+                                               const Seed004Options& options) {
+    return beyond(beyond(interpolator(data, options, options.interpolator),
+                         options,
+                         {Side::Outgoing, options.outgoingEdge}),
+                  options,
+                  {Side::Incoming, options.incomingEdge});
+}
+
+}  // namespace gonio::proc

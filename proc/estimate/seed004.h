@@ -1,0 +1,62 @@
+#pragma once
+// The estimators of the thesis [Cezner2023, 6.1.3 and 6.2] under their own names, as the baselines
+// that ours are measured against, in their usual chain: an interpolator over the data, an
+// extrapolator beyond an outgoing angle, and one beyond an angle of incidence.
+//
+// Measured and interpolated answers come from the interpolator, whatever flags its samples have;
+// answers beyond an edge are extrapolated. Where the thesis says 0 for what it cannot know, there
+// is no answer here.
+
+#include <optional>
+#include <string_view>
+
+#include "proc/estimate/axis_linear.h"
+#include "proc/estimate/bezier_extrapolator.h"
+#include "proc/estimate/gradient_extrapolator.h"
+#include "proc/estimate/grid_linear.h"
+#include "proc/estimate/shepard.h"
+
+namespace gonio::proc {
+
+enum class SeedInterpolator {
+    Shepard,     ///< NeighborsInterpolator
+    AxisLinear,  ///< LinearAxisInterpolator
+    GridLinear   ///< GridInterpolator
+};
+
+enum class SeedExtrapolator {
+    None,
+    Linear,
+    Constant,  ///< ClampExtrapolator
+    Bezier,
+    Gradient  ///< GradientExtrapolator
+};
+
+/// "shepard", "axis-linear", "grid-linear".
+[[nodiscard]] std::string_view name(SeedInterpolator interpolator);
+[[nodiscard]] std::optional<SeedInterpolator> seedInterpolatorNamed(std::string_view name);
+/// "none", "linear", "constant", "bezier", "gradient".
+[[nodiscard]] std::string_view name(SeedExtrapolator extrapolator);
+[[nodiscard]] std::optional<SeedExtrapolator> seedExtrapolatorNamed(std::string_view name);
+
+struct Seed004Options {
+    SeedInterpolator interpolator = SeedInterpolator::Shepard;
+    ShepardOptions shepard;
+    AxisReach axisLinear;
+    GridLinearOptions gridLinear;  ///< without incidences: those of the data
+    SeedInterpolator gridFilledBy = SeedInterpolator::Shepard;  ///< not the grid again
+
+    SeedExtrapolator beyondOutgoing = SeedExtrapolator::Constant;
+    SeedExtrapolator beyondIncoming = SeedExtrapolator::Constant;
+    Radians outgoingEdge = 75_deg;
+    Radians incomingEdge = 60_deg;
+    BezierOptions bezier;
+    GradientOptions gradient;
+};
+
+/// The chain over these data. A Usage error for options out of their domain, and for a grid over
+/// data of more than 256 incidences when no planes are given.
+[[nodiscard]] Result<std::unique_ptr<Scatterer>> makeSeed004(const ScatteredSet& data,
+                                                             const Seed004Options& options = {});
+
+}  // namespace gonio::proc
