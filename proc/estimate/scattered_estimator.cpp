@@ -17,8 +17,18 @@ using Index = Eigen::Index;
 using Place = ScatteredEstimator::Place;
 using Process = ScatteredEstimator::Process;
 
-constexpr double kRatioFloor = 1e-6;  ///< 1/sr
-constexpr double kSame = 1e-9;        ///< distance on the disc of what is the same pair
+/// Of the median |f|, added to f and the model before their ratio is taken: what is far darker is
+/// interpolated as a difference.
+constexpr double kFloorShare = 0.1;
+
+/// But for a turn of both about the normal.
+bool samePair(const LightView& a, const LightView& b) {
+    constexpr double kSame = 1e-9;
+    const LightView one = withLightAtZero(a);
+    const LightView other = withLightAtZero(b);
+    return (one.in.vector() - other.in.vector()).norm() < kSame &&
+           (one.out.vector() - other.out.vector()).norm() < kSame;
+}
 
 /// Coordinates of a pair under a process: distances of such places are Euclidean.
 Place placeOf(const Process& process, const LightView& pair) {
@@ -244,6 +254,12 @@ ScatteredEstimator::OneBand ScatteredEstimator::learn(const BrdfData& data,
                                                       const std::vector<LightView>& pairs,
                                                       std::size_t band) const {
     OneBand one;
+    std::vector<double> sizes;
+    for (const FitRow& row : data.rows) {
+        if (!std::isnan(row.f[band])) sizes.push_back(std::abs(row.f[band]));
+    }
+    if (sizes.empty()) return one;
+    one.floor = kFloorShare * median(sizes);
     std::vector<double> common;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
         const FitRow& row = data.rows[i];
@@ -251,13 +267,12 @@ ScatteredEstimator::OneBand ScatteredEstimator::learn(const BrdfData& data,
         const double model = carrier_.at(pairs[i]).value[band];
         one.samples.push_back({.pair = pairs[i],
                                .place = {},
-                               .ratio = (row.f[band] + kRatioFloor) / (model + kRatioFloor) - 1,
+                               .ratio = (row.f[band] + one.floor) / (model + one.floor) - 1,
                                .f = row.f[band],
                                .uRandom = row.uRandom[band],
                                .uSystematic = row.uSystematic[band]});
         if (row.f[band] > 0) common.push_back(row.uSystematic[band] / row.f[band]);
     }
-    if (one.samples.empty()) return one;
     one.process = learned(one.samples);
     for (KrigingSample& sample : one.samples) sample.place = krigingPlace(one.process, sample.pair);
     one.commonRelative = common.empty() ? 0 : median(common);
@@ -270,13 +285,14 @@ ScatteredEstimator::BandAnswer ScatteredEstimator::bandAnswer(const LightView& p
     if (one.samples.empty()) return {};
     const KrigingPlace here = krigingPlace(one.process, pair);
     const Near near = nearest(one.samples, here, neighbours_);
-    const KrigingSample& closest = one.samples[near.sample.front()];
-    if ((closest.place.straight - here.straight).norm() * one.process.length < kSame) {
-        return {closest.f, closest.uRandom, closest.uSystematic, Source::Measured};
+    for (const std::size_t i : near.sample) {
+        const KrigingSample& sample = one.samples[i];
+        if (!samePair(sample.pair, pair)) continue;
+        return {sample.f, sample.uRandom, sample.uSystematic, Source::Measured};
     }
     const Kriged kriged = krige(one.samples, near, one.process.noise);
-    const double model = carrier_.at(pair).value[band] + kRatioFloor;
-    const double f = (1 + kriged.ratio) * model - kRatioFloor;
+    const double model = carrier_.at(pair).value[band] + one.floor;
+    const double f = (1 + kriged.ratio) * model - one.floor;
     const double own = model * std::sqrt(one.process.variance * kriged.unknown);
     const double common = one.commonRelative * std::abs(f);
     constexpr double kMostUnknown = 0.5;

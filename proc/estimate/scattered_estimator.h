@@ -61,9 +61,9 @@ public:
     [[nodiscard]] const Carrier& carrier() const { return carrier_; }
 
     struct Process {
-        double length = 0.5;         ///< of the disc
+        double length = 2;           ///< of the disc
         double incidenceWeight = 1;  ///< of rho_i in the square of a distance
-        double grazing = 0;          ///< by how much the disc is drawn out at its rim
+        double grazing = 1;          ///< by how much the disc is drawn out at its rim
         bool fromMirror = false;
         double noise = 0.1;      ///< variance, relative to the process's
         double variance = 1e-2;  ///< of the ratio
@@ -76,6 +76,7 @@ private:
     struct OneBand {
         std::vector<KrigingSample> samples;
         Process process;
+        double floor = 0;           ///< 1/sr, beside f and the model in their ratio
         double commonRelative = 0;  ///< systematic uncertainty
     };
     /// NaN where the band was not sampled.
