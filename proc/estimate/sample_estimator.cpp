@@ -110,22 +110,32 @@ std::shared_ptr<const PriorBasis> standardPrior() {
     return basis;
 }
 
-SampleEstimator::SampleEstimator(SampleSet set, SampleEstimatorOptions options)
-    : lookup_(std::move(set)),
+SampleEstimator::SampleEstimator(std::shared_ptr<const Scatterer> measured,
+                                 BrdfData data,
+                                 SampleEstimatorOptions options)
+    : measured_(std::move(measured)),
       options_(std::move(options)),
-      data_(fitDataOf(lookup_.set())),
-      coverage_(data_, std::vector<bool>(data_.incidences.size(), true)),
-      corrections_(correctionsOf(lookup_.set())) {}
+      data_(std::move(data)),
+      coverage_(data_, std::vector<bool>(data_.incidences.size(), true)) {
+    if (const auto* sample = dynamic_cast<const SampleLookup*>(measured_.get())) {
+        corrections_ = correctionsOf(sample->set());
+    }
+}
 
 Result<std::unique_ptr<const SampleEstimator>> SampleEstimator::over(
     SampleSet set, SampleEstimatorOptions options) {
-    const std::string name = set.info.name;
+    BrdfData data = fitDataOf(set);
+    auto lookup = std::make_shared<const SampleLookup>(std::move(set));  // the estimator's own
+    return over(std::move(lookup), std::move(data), std::move(options));
+}
+
+Result<std::unique_ptr<const SampleEstimator>> SampleEstimator::over(
+    std::shared_ptr<const Scatterer> measured, BrdfData data, SampleEstimatorOptions options) {
     std::unique_ptr<const SampleEstimator> made(
-        new SampleEstimator(std::move(set), std::move(options)));
+        new SampleEstimator(std::move(measured), std::move(data), std::move(options)));
     if (made->data_.rows.empty()) {
         return Error{ErrorKind::Quality,
-                     "estimate '" + name + "': no cell of it can be used: all are missing, "
-                     "saturated or blocked"};
+                     "estimate: no value can be used: all are missing, saturated or blocked"};
     }
     const std::string& wanted = made->options_.method;
     if (wanted == "auto") return made;
@@ -166,7 +176,7 @@ Answer SampleEstimator::answer(const LightView& pair) const {
     if (!pair.in.aboveHorizon() || !pair.out.aboveHorizon()) {
         return Answer::none({Flag::BelowHorizon}, Source::Interpolated);
     }
-    const Answer measured = lookup_.answer(pair);
+    const Answer measured = measured_->answer(pair);
     const bool usable = !measured.flags.has(Flag::Saturated) && !measured.flags.has(Flag::Blocked);
     if (measured.source == Source::Measured && measured.present() && usable) return measured;
     return estimate(pair);
@@ -194,6 +204,11 @@ Answer SampleEstimator::estimate(const LightView& pair) const {
         }
         if (share >= 0.5) labelBeyond(answer, kindOf(*chosen.beyond.method));
         if (share < 0.5) answer.flags.set(Flag::Extrapolated);
+    }
+    if (data_.bands == BandCount::One) {
+        answer.f = LedBands::all(answer.f[Band::R]);
+        answer.uRandom = LedBands::all((*answer.uRandom)[Band::R]);
+        answer.uSystematic = LedBands::all((*answer.uSystematic)[Band::R]);
     }
     return answer;
 }

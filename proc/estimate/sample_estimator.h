@@ -47,9 +47,13 @@ public:
     /// measured cell does not answer.
     [[nodiscard]] static Result<std::unique_ptr<const SampleEstimator>> over(
         SampleSet set, SampleEstimatorOptions options);
+    /// Over anything that answers `measured` at what was measured, shared with its owner, and the
+    /// data that it holds.
+    [[nodiscard]] static Result<std::unique_ptr<const SampleEstimator>> over(
+        std::shared_ptr<const Scatterer> measured, BrdfData data, SampleEstimatorOptions options);
 
     [[nodiscard]] Answer answer(const LightView& pair) const override;
-    [[nodiscard]] const SampleSet& set() const { return lookup_.set(); }
+    [[nodiscard]] BandCount bandCount() const override { return data_.bands; }
 
     /// What was chosen and why; makes the choice where it was not made yet.
     [[nodiscard]] const MethodChoice& choice() const;
@@ -57,15 +61,17 @@ public:
     [[nodiscard]] const SamplePrior* prior() const;
 
 private:
-    SampleEstimator(SampleSet set, SampleEstimatorOptions options);
+    SampleEstimator(std::shared_ptr<const Scatterer> measured,
+                    BrdfData data,
+                    SampleEstimatorOptions options);
     void choose() const;
     [[nodiscard]] Answer estimate(const LightView& pair) const;
 
-    SampleLookup lookup_;
+    std::shared_ptr<const Scatterer> measured_;
     SampleEstimatorOptions options_;
     BrdfData data_;
     Coverage coverage_;
-    Flags corrections_;  ///< that any cell has: glare, tilt, drift
+    Flags corrections_;  ///< that any cell of the sample has: glare, tilt, drift
 
     mutable std::once_flag chosen_;  // the choice is a pure function of the members above
     mutable MethodChoice choice_;

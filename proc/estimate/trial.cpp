@@ -49,7 +49,7 @@ RowAnswer rowAnswer(const IncidenceMethod& method,
 double squaredError(const BrdfData& data, const FitRow& row, std::size_t band, double answer) {
     constexpr double kFloor = 1e-5;  // 1/sr: what the rig cannot tell from nothing
     const double f = row.f[band];
-    const double u = data.uOf(row, band);
+    const double u = data.uKnown ? data.uOf(row, band) : 0;
     const double off = answer - f;
     return (off * off - u * u) / (f * f + kFloor * kFloor);
 }

@@ -1,0 +1,115 @@
+#include "daemon/estimators.h"
+
+#include <algorithm>
+
+#include "proc/estimate/grid_data.h"
+#include "proc/estimate/method_choice.h"
+#include "proc/estimate/scattered_estimator.h"
+#include "proc/estimate/seed004.h"
+#include "proc/formats/points_csv.h"
+#include "proc/table/scattered_of.h"
+
+namespace gonio::daemon {
+namespace {
+
+using Opened = std::shared_ptr<const Scatterer>;
+
+Result<std::shared_ptr<const proc::PriorBasis>> priorOf(const EstimatorChoice& choice) {
+    if (choice.prior.empty()) return proc::standardPrior();
+    const auto library = proc::PriorLibrary::read(choice.prior);
+    if (!library) return library.error();
+    auto basis = proc::PriorBasis::over(*library);
+    if (!basis) return basis.error();
+    return std::make_shared<const proc::PriorBasis>(std::move(*basis));  // of one run
+}
+
+Result<Opened> ofTheThesis(proc::SeedInterpolator interpolator,
+                           const Result<proc::Scattered>& points) {
+    if (!points) return points.error();
+    auto made = proc::makeSeed004(points->set,
+                                  {.interpolator = interpolator,
+                                   .gridFilledBy = proc::SeedInterpolator::AxisLinear});
+    if (!made) return made.error();
+    return Opened(std::move(*made));
+}
+
+Result<proc::Scattered> scatteredOf(const Material& material) {
+    if (material.sample != nullptr) return proc::scatteredOf(*material.sample);
+    return proc::scatteredOf(*material.table);
+}
+
+Result<Estimated> ofMaterial(Material material, const EstimatorChoice& choice) {
+    if (choice.name == "none") {
+        Opened lookup = material.scatterer;
+        return Estimated{std::move(lookup), std::move(material)};
+    }
+    if (const auto seed = proc::seedInterpolatorNamed(choice.name)) {
+        auto made = ofTheThesis(*seed, scatteredOf(material));
+        if (!made) return made.error();
+        return Estimated{std::move(*made), std::move(material)};
+    }
+    proc::SampleEstimatorOptions options{.method = choice.name, .effort = choice.effort};
+    auto prior = priorOf(choice);
+    if (!prior) return prior.error();
+    options.prior = std::move(*prior);
+    proc::BrdfData data = material.sample != nullptr
+                              ? proc::fitDataOf(*material.sample)
+                              : proc::gridDataOf(*material.scatterer, material.incidences());
+    auto made = proc::SampleEstimator::over(material.scatterer, std::move(data), options);
+    if (!made) return made.error();
+    const proc::SampleEstimator* chosen = made->get();
+    return Estimated{Opened(std::move(*made)), std::move(material), chosen};
+}
+
+Result<Estimated> ofScattered(const std::string& file, const EstimatorChoice& choice) {
+    if (choice.name != "auto") {
+        return Error{ErrorKind::Usage,
+                     "'" + file + "' holds scattered values: --estimator auto is for them, not '" +
+                         choice.name + "'"};
+    }
+    const Result<proc::Points> points = proc::readPoints(file);
+    if (!points) return points.error();
+    const auto data = proc::fitDataOf(*points);
+    if (!data) return data.error().in("'" + file + "'");
+    auto made = proc::ScatteredEstimator::over(*data);
+    if (!made) return made.error().in("'" + file + "'");
+    return Estimated{Opened(std::move(*made)), Material{}};
+}
+
+Result<void> checkName(const std::string& name) {
+    const std::vector<std::string> known = estimatorNames();
+    if (std::find(known.begin(), known.end(), name) != known.end()) return {};
+    std::string list;
+    for (const std::string& one : known) list += (list.empty() ? "" : ", ") + one;
+    return Error{ErrorKind::Usage, "--estimator '" + name + "' is not known; known: " + list};
+}
+
+}  // namespace
+
+std::vector<std::string> estimatorNames() {
+    std::vector<std::string> names{"auto", "none", "shepard", "axis-linear", "grid-linear"};
+    for (std::string& name : proc::methodNames()) names.push_back(std::move(name));
+    return names;
+}
+
+Result<Estimated> openEstimated(const std::string& f,
+                                const std::filesystem::path& store,
+                                const EstimatorChoice& choice,
+                                proc::EvalPath path) {
+    if (auto known = checkName(choice.name); !known) return known.error();
+    if (std::filesystem::path(f).extension() == ".csv") return ofScattered(f, choice);
+    Result<Material> material = openMaterial(f, store, path);
+    if (!material) return material.error();
+    if (material->sample != nullptr || material->table != nullptr) {
+        auto made = ofMaterial(std::move(*material), choice);
+        if (!made) return made.error().in("'" + f + "'");
+        return made;
+    }
+    if (choice.name != "auto" && choice.name != "none") {
+        return Error{ErrorKind::Usage, "'" + f + "' is a formula: it needs no --estimator"};
+    }
+    Opened scatterer = material->scatterer;
+    return Estimated{std::move(scatterer), std::move(*material)};
+}
+
+}  // namespace gonio::daemon

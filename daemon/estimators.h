@@ -1,0 +1,42 @@
+#pragma once
+// --estimator: how a file is asked between and beyond what was measured.
+//   auto        what predicts the sample best (proc/estimate/sample_estimator.h); of scattered values
+//               kriging (scattered_estimator.h)
+//   none        the look-up alone: no answer beyond the angles of the file
+//   shepard, axis-linear, grid-linear   the thesis's (proc/estimate/seed004.h)
+//   and the names of methodNames(), one method of auto's without the choice.
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "daemon/material.h"
+#include "proc/core/effort.h"
+#include "proc/estimate/sample_estimator.h"
+
+namespace gonio::daemon {
+
+struct EstimatorChoice {
+    std::string name = "auto";
+    Effort effort = Effort::Standard;
+    std::filesystem::path prior;  ///< a library of `prior build`; empty: the standard one
+};
+
+struct Estimated {
+    std::shared_ptr<const Scatterer> scatterer;  ///< shared with what it was made over
+    Material material;                           ///< the file's own; empty kind for scattered values
+    /// Of the scatterer, where it chooses; else null.
+    const proc::SampleEstimator* sample = nullptr;
+};
+
+[[nodiscard]] std::vector<std::string> estimatorNames();
+
+/// F, ready to answer. A model is its own estimator: any but auto and none is a Usage error; so is
+/// a name that is none. A .csv file holds scattered values.
+[[nodiscard]] Result<Estimated> openEstimated(const std::string& f,
+                                              const std::filesystem::path& store,
+                                              const EstimatorChoice& choice,
+                                              proc::EvalPath path = {});
+
+}  // namespace gonio::daemon
