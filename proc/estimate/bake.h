@@ -10,7 +10,7 @@ namespace gonio::proc {
 
 struct BakeOptions {
     BoxResolution resolution;
-    TableStorage storage = TableStorage::Half;
+    TableStorage storage = TableStorage::Float;
     /// Spacing of the nodes of tan(theta_h) at the peak; 0: three quarters of halfWidthTangent.
     double t0 = 0;
 };

@@ -54,7 +54,7 @@ template <class T>
 }
 
 struct BoxResolution {
-    int tanHalf = 64, cosDiff = 32, skew = 16;
+    int tanHalf = 128, cosDiff = 48, skew = 12;
 
     [[nodiscard]] std::size_t nodes() const {
         return static_cast<std::size_t>(tanHalf) * static_cast<std::size_t>(cosDiff) *

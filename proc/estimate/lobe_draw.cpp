@@ -108,10 +108,11 @@ LobeMixture lobesAbout(double halfWidthTangent) {
 }
 
 LobeDraw::LobeDraw(const Scatterer& of, const LobeMixture& lobes, std::size_t incidences)
-    : mixtures_(incidences) {
-    parallelFor(incidences, [&](IndexRange range) {
+    : mixtures_(std::max<std::size_t>(1, incidences)) {
+    parallelFor(mixtures_.size(), [&](IndexRange range) {
         for (std::size_t i = range.begin; i < range.end; ++i) {
-            const double mu = (static_cast<double>(i) + 0.5) / static_cast<double>(incidences);
+            const double mu =
+                (static_cast<double>(i) + 0.5) / static_cast<double>(mixtures_.size());
             const Radians theta(std::atan2(std::sqrt((1 - mu) * (1 + mu)), mu));
             mixtures_[i] = fitted(of, Direction::fromSpherical(theta, Radians(0)), lobes);
         }

@@ -117,10 +117,10 @@ private:
     [[nodiscard]] IncidenceSum at(double mu) {
         IncidenceSum mean;
         const Radians theta(std::atan2(std::sqrt((1 - mu) * (1 + mu)), mu));
-        for (int k = 0; k < options_.azimuths; ++k) {
-            const Direction wi =
-                Direction::fromSpherical(theta, Radians(2 * kPi * k / options_.azimuths));
-            addOne(mean, 1.0 / options_.azimuths, directionalAlbedo(of_, wi, options_.directional));
+        const int azimuths = std::max(1, options_.azimuths);
+        for (int k = 0; k < azimuths; ++k) {
+            const Direction wi = Direction::fromSpherical(theta, Radians(2 * kPi * k / azimuths));
+            addOne(mean, 1.0 / azimuths, directionalAlbedo(of_, wi, options_.directional));
         }
         ++incidences_;
         return mean;

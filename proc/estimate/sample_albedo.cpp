@@ -52,6 +52,9 @@ std::vector<double> trapezoid(const std::vector<double>& at) {
 double trapezoidError(const std::vector<double>& at, const std::vector<double>& value) {
     const std::size_t count = at.size();
     if (count < 3) return kNan;
+    for (std::size_t i = 1; i < count; ++i) {
+        if (!(at[i] > at[i - 1])) return kNan;
+    }
     std::vector<double> bend(count, 0.0);
     for (std::size_t i = 1; i + 1 < count; ++i) {
         const double before = (value[i] - value[i - 1]) / (at[i] - at[i - 1]);

@@ -24,7 +24,8 @@ namespace gonio::proc {
 /// Of a whole sample, (1 / pi) integral of a cos(theta_i) dwi = integral of a d(sin^2(theta_i)),
 /// a linear in sin^2(theta_i) between LEDs: LEDs are independent in what is random. Incidences
 /// beyond the first and last LED count as missing. The error bound is of that line between LEDs,
-/// twice what their second differences say; NaN below three LEDs, where none can be had.
+/// twice what their second differences say; NaN below three LEDs and where two share an incidence,
+/// where none can be had.
 [[nodiscard]] Albedo meanAlbedo(const SampleSet& sample);
 
 }  // namespace gonio::proc

@@ -116,6 +116,9 @@ TEST(SampleMeanAlbedo, OfOneIncidenceIsNotKnown) {
     set.leds.resize(2);
     EXPECT_TRUE(std::isfinite(meanAlbedo(set)[Band::G].value));
     EXPECT_TRUE(std::isnan(meanAlbedo(set)[Band::G].errorBound));
+    set.leds.push_back(set.leds.back());
+    EXPECT_TRUE(std::isfinite(meanAlbedo(set)[Band::G].value));
+    EXPECT_TRUE(std::isnan(meanAlbedo(set)[Band::G].errorBound)) << "two share an incidence";
     set.leds.resize(1);
     EXPECT_TRUE(std::isnan(meanAlbedo(set)[Band::G].value));
     EXPECT_EQ(meanAlbedo(set)[Band::G].missing, 1);
