@@ -31,10 +31,23 @@ template <class T>
 struct PairArrays {
     std::span<const T> inX, inY, inZ;
     std::span<const T> outX, outY, outZ;
+
+    [[nodiscard]] PairArrays part(std::size_t from, std::size_t count) const {
+        return {inX.subspan(from, count),
+                inY.subspan(from, count),
+                inZ.subspan(from, count),
+                outX.subspan(from, count),
+                outY.subspan(from, count),
+                outZ.subspan(from, count)};
+    }
 };
 template <class T>
 struct BandArrays {
     std::span<T> r, g, b;
+
+    [[nodiscard]] BandArrays part(std::size_t from, std::size_t count) const {
+        return {r.subspan(from, count), g.subspan(from, count), b.subspan(from, count)};
+    }
 };
 
 class AnalyticModel : public Scatterer {
