@@ -108,9 +108,30 @@ struct EvalOptions {
     std::filesystem::path points;
     std::filesystem::path output;  ///< empty: stdout
     std::string precision = "double";
-    std::string effort = "reference";
+    std::string effort = "reference";  ///< of a model's evaluation, and of an estimator
+    std::string estimator = "auto";    ///< daemon/estimators.h
+    std::filesystem::path prior;       ///< a library; empty: the standard one
 };
 Result<void> eval(const CommonOptions& common, const EvalOptions& options);
+
+struct CompareOptions {
+    std::string a;
+    std::string b;
+    std::string incidences;          ///< degrees with commas; empty: those of a
+    std::string estimator = "none";  ///< of both
+};
+/// Whether two surfaces agree within their uncertainties: relative, log and cosine-weighted
+/// differences, by region.
+Result<void> compare(const CommonOptions& common, const CompareOptions& options);
+
+struct PriorOptions {
+    std::size_t count = 2000;
+    std::uint64_t seed = 1;
+    std::vector<std::filesystem::path> fits;  ///< files of published fits
+    std::filesystem::path output;
+};
+/// Writes the materials of a statistical prior, a model's spec per line.
+Result<void> buildPrior(const CommonOptions& common, const PriorOptions& options);
 
 struct ConvertOptions {
     std::string input;
@@ -159,6 +180,15 @@ struct TradeNumericsOptions {
 };
 /// The models' errors in float and double against reference values, by table, column and alpha.
 Result<void> tradeNumerics(const CommonOptions& common, const TradeNumericsOptions& options);
+
+struct TradeInterpolationOptions {
+    bool quick = false;            ///< four materials, fewer directions
+    std::string noise = "0";       ///< relative, of each cell: "1%"
+    std::filesystem::path output;  ///< a Markdown file; empty: none
+};
+/// Every estimator on surfaces of known truth, between and beyond the measured angles.
+Result<void> tradeInterpolation(const CommonOptions& common,
+                                const TradeInterpolationOptions& options);
 
 struct TradePowersOptions {
     bool quick = false;            ///< fewer powers, angles and repeats

@@ -9,6 +9,7 @@
 
 #include "daemon/cli/commands.h"
 #include "daemon/cli/output.h"
+#include "daemon/estimators.h"
 #include "daemon/exports.h"
 #include "daemon/material.h"
 #include "proc/core/number_text.h"
@@ -104,17 +105,20 @@ Result<void> eval(const CommonOptions& common, const EvalOptions& options) {
     if (!effort) return effort.error().in("eval");
     const Result<proc::Precision> precision = proc::parsePrecision(options.precision);
     if (!precision) return precision.error().in("eval");
-    const Result<Material> material =
-        openMaterial(options.file, common.store, {.effort = *effort, .precision = *precision});
-    if (!material) return material.error();
-    if (*precision == proc::Precision::Float && material->kind != "model") {
+    const Result<Estimated> opened =
+        openEstimated(options.file,
+                      common.store,
+                      {.name = options.estimator, .effort = *effort, .prior = options.prior},
+                      {.effort = *effort, .precision = *precision});
+    if (!opened) return opened.error();
+    if (*precision == proc::Precision::Float && opened->material.kind != "model") {
         return Error{ErrorKind::Usage,
                      "eval: '" + options.file + "': --precision float is for model:SPEC alone"};
     }
     const Result<proc::Points> points = proc::readPoints(options.points);
     if (!points) return points.error();
-    const std::vector<Answer> answers = answersAt(*material->scatterer, points->pairs);
-    const std::string csv = proc::evalCsv(*points, answers, material->scatterer->bandCount());
+    const std::vector<Answer> answers = answersAt(*opened->scatterer, points->pairs);
+    const std::string csv = proc::evalCsv(*points, answers, opened->scatterer->bandCount());
     if (!options.output.empty()) return proc::writeFile(options.output, csv);
     std::cout << csv;
     return {};

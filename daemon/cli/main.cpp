@@ -37,11 +37,14 @@ struct Program {
     GoalOptions goal;
     std::string infoFile;
     EvalOptions eval;
+    CompareOptions compare;
+    PriorOptions prior;
     ConvertOptions convert;
     ExportOptions exported;
     PlotOptions plot;
     FitOptions fit;
     TradeOptions trade;
+    TradeInterpolationOptions interpolation;
     TradeNumericsOptions numerics;
     TradePowersOptions powers;
     Command chosen;
@@ -264,8 +267,33 @@ void Program::addFiles() {
         ->required();
     sub->add_option("-o,--output", eval.output, "write here instead of stdout");
     sub->add_option("--precision", eval.precision, "float or double, of a model's evaluation");
-    sub->add_option(
-        "--effort", eval.effort, "draft, standard or reference, of a model's evaluation");
+    sub->add_option("--effort",
+                    eval.effort,
+                    "draft, standard or reference, of a model's evaluation and of an estimator");
+    sub->add_option("--estimator",
+                    eval.estimator,
+                    "between and beyond the measured angles: auto, none, or a method by name");
+    sub->add_option("--prior", eval.prior, "a library of `prior build`; default: the standard one");
+
+    sub = command(app, "compare", "whether two surfaces agree within their uncertainties", [this] {
+        return daemon::compare(common, compare);
+    });
+    sub->add_option("a", compare.a, "a file, sample:NAME or model:SPEC")->required();
+    sub->add_option("b", compare.b, "likewise")->required();
+    sub->add_option("--incidences", compare.incidences, "degrees with commas; default: those of a");
+    sub->add_option("--estimator", compare.estimator, "auto, none, or a method by name, of both");
+
+    CLI::App* parent = app.add_subcommand("prior", "the statistical prior of the estimators");
+    parent->require_subcommand(1);
+    parent->fallthrough();
+    sub = command(*parent, "build", "write its materials, a model's spec per line", [this] {
+        return buildPrior(common, prior);
+    });
+    sub->add_option("--count", prior.count, "materials drawn from documented families")
+        ->check(CLI::Range(10, 20000));
+    sub->add_option("--seed", prior.seed, "of the draws");
+    sub->add_option("--fits", prior.fits, "files of published fits to add");
+    sub->add_option("-o,--output", prior.output, "the file to write")->required();
 
     sub = command(app, "convert", "write a file in another format", [this] {
         return daemon::convert(common, convert);
@@ -333,6 +361,14 @@ void Program::addEvidence() {
                   [this] { return tradePowers(common, powers); });
     sub->add_flag("--quick", powers.quick, "fewer powers, angles and repeats");
     sub->add_option("-o,--output", powers.output, "folder for the tables, CSV and Markdown");
+
+    sub = command(*parent,
+                  "interpolation",
+                  "every estimator on surfaces of known truth, between and beyond the angles",
+                  [this] { return tradeInterpolation(common, interpolation); });
+    sub->add_flag("--quick", interpolation.quick, "four materials, fewer directions");
+    sub->add_option("--noise", interpolation.noise, "relative noise of each cell, such as 1%");
+    sub->add_option("-o,--output", interpolation.output, "write the tables here as Markdown");
 }
 
 Program::Program() {

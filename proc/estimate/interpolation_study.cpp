@@ -75,7 +75,9 @@ struct Tally {
     double missing = 0, count = 0;
 
     void add(const Answer& answer, const LedBands& truth, const LedBands& peak, double weight) {
+        constexpr double kDarkest = 1e-5;  // 1/sr: darker is beyond what a rig measures
         for (const Band band : kBands) {
+            if (truth[band] < kDarkest) continue;
             ++count;
             const double f = answer.f[band];
             if (std::isnan(f)) {
