@@ -14,6 +14,9 @@ namespace {
 
 using Opened = std::shared_ptr<const Scatterer>;
 
+/// Relative noise of a table that says nothing of its own.
+constexpr double kAssumed = 0.01;
+
 Result<std::shared_ptr<const proc::PriorBasis>> priorOf(const EstimatorChoice& choice) {
     if (choice.prior.empty()) return proc::standardPrior();
     const auto library = proc::PriorLibrary::read(choice.prior);
@@ -54,7 +57,9 @@ Result<Estimated> ofMaterial(Material material, const EstimatorChoice& choice) {
     options.prior = std::move(*prior);
     proc::BrdfData data = material.sample != nullptr
                               ? proc::fitDataOf(*material.sample)
-                              : proc::gridDataOf(*material.scatterer, material.incidences());
+                              : proc::gridDataOf(*material.scatterer,
+                                                 material.incidences(),
+                                                 {.assumedRelative = kAssumed});
     auto made = proc::SampleEstimator::over(material.scatterer, std::move(data), options);
     if (!made) return made.error();
     const proc::SampleEstimator* chosen = made->get();

@@ -177,8 +177,9 @@ private:
                 to = n == 1 ? add : to + (add - to) / n;
             };
             mean(cells.value[*cell], quantity.of(f));
-            mean(cells.uRandom[*cell], slope * row.uRandom[band]);
-            mean(cells.uSystematic[*cell], slope * common);
+            const double known = data.uKnown ? slope : 0;  // an assumed one is no uncertainty
+            mean(cells.uRandom[*cell], known * row.uRandom[band]);
+            mean(cells.uSystematic[*cell], known * common);
         }
         return cells;
     }

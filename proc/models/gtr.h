@@ -19,8 +19,14 @@ template <class P>
     using std::expm1;
     using std::log;
     const P logA2 = P(2) * log(alpha);
-    if (logA2 == P(0)) return P(1 / kPi);
     const P power = gamma - P(1);
+    // Near alpha = 1 both differences below vanish: their quotient as a series.
+    if (logA2 > P(-1e-4)) {
+        const P q = power * logA2;
+        const P quotient = (P(1) + logA2 / P(2) + logA2 * logA2 / P(6)) /
+                           (P(1) + q / P(2) + q * q / P(6));
+        return quotient / (P(kPi) * alpha * alpha);
+    }
     // (1 - alpha^(2 (gamma - 1))) / (gamma - 1), without a difference.
     const P rest = power == P(0) ? P(-logA2) : P(-expm1(power * logA2) / power);
     return -expm1(logA2) / (P(kPi) * alpha * alpha * rest);

@@ -1,0 +1,48 @@
+#include "proc/estimate/error_model.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace gonio::proc {
+namespace {
+
+ProbeError error(double relative, Reach reach, double mirrorDeg) {
+    return {.squared = relative * relative,
+            .reach = reach,
+            .fromMirror = Radians::fromDegrees(mirrorDeg)};
+}
+
+TEST(ErrorModel, GrowsWithTheReachOfAnAnchoredMethod) {
+    const ErrorModel model(true, {error(0.02, {.between = 1}, 3), error(0.1, {.between = 1}, 50)});
+    EXPECT_NEAR(model.at({.between = 1}, 3_deg), std::hypot(0.02, ErrorModel::kLeast), 1e-12);
+    EXPECT_NEAR(model.at({.between = 0.5}, 3_deg), std::hypot(0.01, ErrorModel::kLeast), 1e-12);
+    EXPECT_NEAR(model.at({.between = 1}, 50_deg), std::hypot(0.1, ErrorModel::kLeast), 1e-12);
+    EXPECT_NEAR(model.at({.between = 0}, 50_deg), ErrorModel::kLeast, 1e-12);
+}
+
+TEST(ErrorModel, IsTheSameEverywhereForAMethodThatIsNotAnchored) {
+    const ErrorModel model(false, {error(0.02, {.between = 0.3}, 3)});
+    EXPECT_NEAR(model.at({.between = 0}, 3_deg), std::hypot(0.02, ErrorModel::kLeast), 1e-12);
+}
+
+TEST(ErrorModel, GrowsBeyondTheIncidencesAndTheEdge) {
+    ErrorModel model(true, {});
+    model.learnBeyondIncidence({error(0.2, {.beyondIncidence = 20_deg}, 0)});
+    model.learnEdge({error(0.3, {.steps = 15}, 0)});
+    EXPECT_NEAR(model.at({.beyondIncidence = 10_deg}, 0_deg), std::hypot(0.1, 5e-4), 1e-9);
+    EXPECT_NEAR(model.at({.steps = 5}, 0_deg), std::hypot(0.1, 5e-4), 1e-9);
+}
+
+TEST(ErrorModel, TakesErrorsBelowTheNoiseForNone) {
+    ProbeError below = error(0, {.between = 1}, 3);
+    below.squared = -1e-4;
+    EXPECT_NEAR(ErrorModel(true, {below}).at({.between = 1}, 3_deg), ErrorModel::kLeast, 1e-12);
+}
+
+TEST(ErrorModel, OfNothingIsTheLeast) {
+    EXPECT_EQ(ErrorModel().at({.between = 1, .steps = 10}, 10_deg), ErrorModel::kLeast);
+}
+
+}  // namespace
+}  // namespace gonio::proc

@@ -1,0 +1,216 @@
+#include "proc/estimate/sample_estimator.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "proc/estimate/grid_data.h"
+#include "proc/estimate/interpolation_study.h"
+#include "proc/models/spec.h"
+#include "proc/optics/cell_grid.h"
+#include "tests/support/sample_sets.h"
+
+namespace gonio::proc {
+namespace {
+
+LightView pairOf(double thetaI, double thetaO, double phiO) {
+    return {.in = Direction::fromSpherical(Radians::fromDegrees(thetaI), 0_deg),
+            .out = Direction::fromSpherical(Radians::fromDegrees(thetaO),
+                                            Radians::fromDegrees(phiO))};
+}
+
+std::unique_ptr<const AnalyticModel> plastic() {
+    return std::move(*makeModel("lambert,albedo=0.3/0.1/0.05+ggx,alpha=0.2,f0=0.04"));
+}
+
+/// Of the plastic, with 1 % of noise.
+SampleSet plasticSample() {
+    static const SampleSet set = syntheticSample(*plastic(), {.relativeNoise = 0.01});
+    return set;
+}
+
+std::unique_ptr<const SampleEstimator> estimator(SampleSet set, SampleEstimatorOptions options = {}) {
+    auto made = SampleEstimator::over(std::move(set), std::move(options));
+    EXPECT_TRUE(made) << made.error().message;
+    return std::move(*made);
+}
+
+const SampleEstimator& ofPlastic() {
+    static const auto made = estimator(plasticSample(), {.prior = standardPrior()});
+    return *made;
+}
+
+TEST(SampleEstimator, AnswersAMeasuredCellAsItWasMeasured) {
+    const SampleSet set = plasticSample();
+    for (const std::size_t cell : {std::size_t{3}, std::size_t{7777}}) {
+        const LightView pair{.in = Direction::fromSpherical(40_deg, 0_deg),
+                             .out = CellGrid::centre(cell)};
+        const Answer answer = ofPlastic().answer(pair);
+        EXPECT_EQ(answer.source, Source::Measured);
+        EXPECT_EQ(answer.f[Band::G], set.leds[2].bands[1].f[cell]);
+    }
+}
+
+TEST(SampleEstimator, AnswersEverywhereAboveTheHorizonWithAnUncertainty) {
+    for (const double thetaI : {0.0, 0.01, 10.0, 45.0, 60.0, 61.0, 75.0, 89.99}) {
+        for (const double thetaO : {0.0, 0.01, 30.0, 60.0, 75.0, 77.0, 89.99}) {
+            for (const double phi : {0.0, 90.0, 180.0, 300.0}) {
+                const Answer answer = ofPlastic().answer(pairOf(thetaI, thetaO, phi));
+                ASSERT_TRUE(answer.present()) << thetaI << " " << thetaO << " " << phi;
+                for (const Band band : kBands) {
+                    EXPECT_GT(answer.f[band], 0);
+                    ASSERT_TRUE(answer.u(band));
+                    EXPECT_GT(*answer.u(band), 0);
+                }
+            }
+        }
+    }
+}
+
+TEST(SampleEstimator, HasNoAnswerBelowTheHorizon) {
+    const Answer answer = ofPlastic().answer(pairOf(20, 95, 0));
+    EXPECT_FALSE(answer.present());
+    EXPECT_TRUE(answer.flags.has(Flag::BelowHorizon));
+}
+
+TEST(SampleEstimator, IsRightBetweenAndBeyondTheAngles) {
+    const auto truth = plastic();
+    const RegionError between =
+        errorOf(ofPlastic(), *truth, {.incidences = {10_deg, 30_deg, 50_deg}, .stride = 29});
+    EXPECT_LT(between.hemisphere, 0.003);
+    EXPECT_LT(between.lobe, 0.008);
+    EXPECT_GT(between.within2u, 0.9);
+    EXPECT_EQ(between.unanswered, 0);
+    const RegionError steep = errorOf(ofPlastic(), *truth, {.incidences = {70_deg}, .stride = 29});
+    EXPECT_LT(steep.hemisphere, 0.02);
+    const RegionError grazing = errorOf(
+        ofPlastic(),
+        *truth,
+        {.incidences = {20_deg, 40_deg}, .firstRow = 80, .lastRow = 85, .stride = 29});
+    EXPECT_LT(grazing.hemisphere, 0.03);
+}
+
+TEST(SampleEstimator, ChoosesAModelThatTheSampleIs) {
+    const MethodChoice& choice = ofPlastic().choice();
+    EXPECT_TRUE(choice.between.method->name().find("ggx") != std::string::npos ||
+                choice.between.method->name().find("gtr") != std::string::npos)
+        << choice.between.method->name();
+    ASSERT_FALSE(choice.scores.empty());
+    for (std::size_t i = 1; i < choice.scores.size(); ++i) {
+        EXPECT_LE(choice.scores[i - 1].between(), choice.scores[i].between());
+    }
+    // What everyone does errs by some ten times more.
+    for (const MethodScore& score : choice.scores) {
+        if (score.name != "specular-linear") continue;
+        EXPECT_GT(score.between(), 10 * choice.scores.front().between());
+    }
+}
+
+TEST(SampleEstimator, SaysWhereAnAnswerComesFrom) {
+    const auto carried =
+        estimator(plasticSample(), {.method = "carried:lambert+ggx", .effort = Effort::Draft});
+    const Answer between = carried->answer(pairOf(30, 50, 70));
+    EXPECT_EQ(between.source, Source::Interpolated);
+    EXPECT_TRUE(between.flags.has(Flag::Interpolated) && between.flags.has(Flag::Model));
+    // 70 to 40 degrees was measured the other way round.
+    const Answer exchanged = carried->answer(pairOf(70, 40, 100));
+    EXPECT_EQ(exchanged.source, Source::Reciprocity);
+    EXPECT_TRUE(exchanged.flags.has(Flag::Reciprocity));
+    const Answer beyond = carried->answer(pairOf(85, 85, 180));
+    EXPECT_EQ(beyond.source, Source::Model);
+    EXPECT_TRUE(beyond.flags.has(Flag::Extrapolated));
+    const auto sheets = estimator(plasticSample(), {.method = "specular-log", .effort = Effort::Draft});
+    EXPECT_EQ(sheets->answer(pairOf(85, 85, 180)).source, Source::Extrapolated);
+    const auto prior = estimator(plasticSample(),
+                                 {.method = "prior", .effort = Effort::Draft, .prior = standardPrior()});
+    EXPECT_EQ(prior->answer(pairOf(30, 50, 70)).source, Source::Prior);
+    EXPECT_TRUE(prior->answer(pairOf(30, 50, 70)).flags.has(Flag::Prior));
+}
+
+TEST(SampleEstimator, DoesNotJumpAtTheEdgesOfWhatWasMeasured) {
+    for (const double edge : {60.0, 75.0}) {
+        for (const double other : {13.0, 33.0, 71.0}) {
+            for (const double step : {1e-7, -1e-7}) {
+                const double low = ofPlastic().answer(pairOf(edge + step, other, 150)).f[Band::R];
+                const double high = ofPlastic().answer(pairOf(edge + 2 * step, other, 150)).f[Band::R];
+                EXPECT_NEAR(low, high, 1e-5 * low) << edge << " " << other;
+            }
+        }
+    }
+}
+
+TEST(SampleEstimator, IsReciprocalAndIsotropic) {
+    for (const LightView& pair : {pairOf(30, 50, 70), pairOf(66, 80, 170), pairOf(5, 12, 40)}) {
+        const double f = ofPlastic().answer(pair).f[Band::R];
+        EXPECT_NEAR(ofPlastic().answer({.in = pair.out, .out = pair.in}).f[Band::R], f, 1e-9 * f);
+        const LightView turned{.in = pair.in.turned(77_deg), .out = pair.out.turned(77_deg)};
+        EXPECT_NEAR(ofPlastic().answer(turned).f[Band::R], f, 1e-9 * f);
+    }
+}
+
+TEST(SampleEstimator, FillsBlockedAndSaturatedCellsFromTheOthers) {
+    SampleSet set = plasticSample();
+    const Direction hole = Direction::fromSpherical(20_deg, 90_deg);
+    for (LedTable& led : set.leds) {
+        for (CellSamples& cells : led.bands) {
+            for (std::size_t i = 0; i < cells.size(); ++i) {
+                const Radians away = angleBetween({.in = hole, .out = CellGrid::centre(i)});
+                if (away > 6_deg) continue;
+                cells.f[i] = 1e6;  // must not be looked at
+                cells.flags[i] = Flags{Flag::Measured, Flag::Blocked};
+            }
+        }
+    }
+    const auto holed = estimator(set, {.method = "carried:lambert+ggx", .effort = Effort::Draft});
+    const LightView pair{.in = Direction::fromSpherical(40_deg, 0_deg),
+                         .out = CellGrid::centre(*CellGrid::cellAt(hole))};
+    const Answer answer = holed->answer(pair);
+    EXPECT_NE(answer.source, Source::Measured);
+    EXPECT_NEAR(answer.f[Band::R], plastic()->answer(pair).f[Band::R], 0.01 * answer.f[Band::R]);
+}
+
+TEST(SampleEstimator, RefusesWhatCannotBe) {
+    EXPECT_EQ(SampleEstimator::over(plasticSample(), {.method = "banana"}).error().kind,
+              ErrorKind::Usage);
+    // No prior was given.
+    EXPECT_EQ(SampleEstimator::over(plasticSample(), {.method = "prior"}).error().kind,
+              ErrorKind::Usage);
+    SampleSet nothing = plasticSample();
+    for (LedTable& led : nothing.leds) {
+        for (CellSamples& cells : led.bands) cells = CellSamples::missing(CellGrid::count());
+    }
+    EXPECT_EQ(SampleEstimator::over(nothing, {}).error().kind, ErrorKind::Quality);
+}
+
+TEST(SampleEstimator, StandsOnOneIncidenceAndOnOneCell) {
+    SampleSet one = plasticSample();
+    one.leds.erase(one.leds.begin() + 1, one.leds.end());
+    const auto single = estimator(one);
+    EXPECT_TRUE(single->answer(pairOf(50, 30, 20)).present());
+    for (CellSamples& cells : one.leds[0].bands) {
+        const double f = cells.f[100];
+        const double u = cells.uRandom[100];
+        cells = CellSamples::missing(CellGrid::count());
+        cells.f[100] = f;
+        cells.uRandom[100] = u;
+        cells.uSystematic[100] = 0;
+        cells.flags[100] = Flags{Flag::Measured};
+    }
+    const auto lonely = estimator(one);
+    const Answer answer = lonely->answer(pairOf(50, 30, 20));
+    EXPECT_TRUE(answer.present());
+    EXPECT_TRUE(answer.flags.has(Flag::Extrapolated));
+}
+
+TEST(SampleEstimator, KeepsOneBandAsOne) {
+    const auto grey = std::shared_ptr<const Scatterer>(plastic());
+    BrdfData data = gridDataOf(*grey, {0_deg, 20_deg, 40_deg, 60_deg}, {.assumedRelative = 0.01});
+    data.bands = BandCount::One;
+    for (FitRow& row : data.rows) row.f[1] = row.f[2] = std::nan("");
+    auto made = SampleEstimator::over(grey, std::move(data), {.method = "specular-log"});
+    ASSERT_TRUE(made) << made.error().message;
+    EXPECT_EQ((*made)->bandCount(), BandCount::One);
+}
+
+}  // namespace
+}  // namespace gonio::proc
