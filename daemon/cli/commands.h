@@ -184,7 +184,7 @@ Result<void> tradeNumerics(const CommonOptions& common, const TradeNumericsOptio
 struct TradeInterpolationOptions {
     bool quick = false;            ///< four materials, fewer directions
     std::string noise = "0";       ///< relative, of each cell: "1%"
-    std::filesystem::path output;  ///< a Markdown file; empty: none
+    std::filesystem::path output;  ///< a folder for tables and pictures; empty: none
 };
 /// Every estimator on surfaces of known truth, between and beyond the measured angles.
 Result<void> tradeInterpolation(const CommonOptions& common,

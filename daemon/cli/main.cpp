@@ -368,7 +368,7 @@ void Program::addEvidence() {
                   [this] { return tradeInterpolation(common, interpolation); });
     sub->add_flag("--quick", interpolation.quick, "four materials, fewer directions");
     sub->add_option("--noise", interpolation.noise, "relative noise of each cell, such as 1%");
-    sub->add_option("-o,--output", interpolation.output, "write the tables here as Markdown");
+    sub->add_option("-o,--output", interpolation.output, "folder for the tables and pictures");
 }
 
 Program::Program() {

@@ -1,5 +1,6 @@
 // `gonio trade interpolation`: every estimator on surfaces of known truth.
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -7,11 +8,11 @@
 #include "daemon/cli/commands.h"
 #include "daemon/cli/goal_options.h"
 #include "daemon/cli/output.h"
-#include "daemon/cli/progress.h"
 #include "driver/steady_clock.h"
 #include "proc/core/number_text.h"
 #include "proc/estimate/interpolation_table.h"
 #include "proc/formats/file_bytes.h"
+#include "proc/report/lobe_plot.h"
 
 namespace gonio::daemon {
 namespace {
@@ -109,6 +110,28 @@ Json toJson(const InterpolationRow& row) {
     return json;
 }
 
+/// A lobe between two LEDs, and one beyond the last: truth, the seed's way, ours.
+Result<void> drawLobes(const std::filesystem::path& folder) {
+    const auto materials = proc::studyMaterials();
+    for (const auto& [material, degrees] :
+         {std::pair("metal .1", 30), std::pair("plastic .1", 50), std::pair("plastic .1", 70)}) {
+        for (const proc::StudyMaterial& one : materials) {
+            if (one.name != material) continue;
+            const auto curves = proc::lobeCurves(one,
+                                                 Radians::fromDegrees(degrees),
+                                                 {"specular-linear", "grid-linear", "auto"});
+            const std::string at = std::to_string(degrees);
+            const std::string picture =
+                proc::lobePlot(one.name + " at " + at + " degrees, measured at 0, 20, 40 and 60",
+                               curves);
+            std::string file = "lobe-" + one.name + "-" + at + ".svg";
+            std::replace(file.begin(), file.end(), ' ', '-');
+            if (auto done = proc::writeFile(folder / file, picture); !done) return done;
+        }
+    }
+    return {};
+}
+
 }  // namespace
 
 Result<void> tradeInterpolation(const CommonOptions& common,
@@ -118,6 +141,10 @@ Result<void> tradeInterpolation(const CommonOptions& common,
         return Error{ErrorKind::Usage,
                      "trade interpolation: --noise '" + options.noise +
                          "', wanted 0 or a share up to 100 %, such as 1%"};
+    }
+    if (!options.output.empty()) {
+        if (auto made = makeOutputFolder(options.output); !made)
+            return made.error().in("trade interpolation");
     }
     const auto rows = proc::interpolationTable(
         {.relativeNoise = *noise, .quick = options.quick},
@@ -132,7 +159,9 @@ Result<void> tradeInterpolation(const CommonOptions& common,
                                  "\nOther materials\n\n" + markdownTable(outside) +
                                  "\nThe estimator `auto`\n\n" + markdownTable(autoRows(rows)) +
                                  "\nCost\n\n" + markdownTable(costRows(rows));
-        if (auto done = proc::writeFile(options.output, text); !done) return done;
+        if (auto done = proc::writeFile(options.output / "interpolation.md", text); !done)
+            return done;
+        if (auto done = drawLobes(options.output); !done) return done;
     }
     if (common.json) {
         Json all = Json::array();

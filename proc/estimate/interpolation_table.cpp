@@ -185,6 +185,30 @@ std::vector<InterpolationRow> interpolationTable(
     return rows;
 }
 
+std::vector<LobeCurve> lobeCurves(const StudyMaterial& material,
+                                  Radians incidence,
+                                  const std::vector<std::string>& methods) {
+    const SampleSet set = syntheticSample(*material.truth);
+    const Direction wi = Direction::fromSpherical(incidence, Radians(0));
+    const auto curveOf = [&](const std::string& name, const Scatterer& of) {
+        LobeCurve curve{.name = name, .thetaDeg = {}, .f = {}};
+        for (double theta = -75; theta <= 75; theta += 0.25) {
+            const Direction wo = Direction::fromSpherical(Radians::fromDegrees(std::abs(theta)),
+                                                          Radians(theta > 0 ? kPi : 0));
+            curve.thetaDeg.push_back(theta);
+            curve.f.push_back(of.answer({.in = wi, .out = wo}).f[Band::R]);
+        }
+        return curve;
+    };
+    std::vector<LobeCurve> curves{curveOf("truth", *material.truth)};
+    for (const std::string& name : methods) {
+        if (const Method method = make(name, set); method.scatterer) {
+            curves.push_back(curveOf(name, *method.scatterer));
+        }
+    }
+    return curves;
+}
+
 InterpolationSummary summaryOf(const std::vector<InterpolationRow>& rows,
                                const std::string& method,
                                bool inFamily,

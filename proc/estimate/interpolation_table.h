@@ -46,6 +46,17 @@ struct InterpolationOptions {
     const Clock& clock,
     const std::function<void(const std::string&)>& progress);
 
+/// f in the plane of incidence, band R.
+struct LobeCurve {
+    std::string name;
+    std::vector<double> thetaDeg;  ///< signed, positive on the mirror's side
+    std::vector<double> f;         ///< 1/sr; NaN where there is no answer
+};
+/// "truth", and what the methods make of the material between the incidences that were measured.
+[[nodiscard]] std::vector<LobeCurve> lobeCurves(const StudyMaterial& material,
+                                                Radians incidence,
+                                                const std::vector<std::string>& methods);
+
 /// Of a method over the materials in the family or outside: the median and the worst of a region.
 struct InterpolationSummary {
     double median = 0;

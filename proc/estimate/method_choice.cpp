@@ -122,7 +122,8 @@ private:
                     const MethodChoiceOptions& options) {
         CarrierFitOptions fit = options.fit;
         fit.startedAt = &all;
-        Carriers carriers = fitCarriers(trial.seen(), trial.groups(), fit);
+        Carriers carriers;
+        if (!fit.families.empty()) carriers = fitCarriers(trial.seen(), trial.groups(), fit);
         list.push_back({std::move(trial), std::move(carriers)});
     }
 
@@ -182,6 +183,16 @@ ErrorModel modelOf(const Trials::Errors& errors) {
     return model;
 }
 
+/// Those that the methods which are asked need.
+std::vector<std::string> familiesOf(const MethodChoiceOptions& options) {
+    if (options.only.empty()) {
+        return options.fit.families.empty() ? carrierFamilies() : options.fit.families;
+    }
+    const std::size_t colon = options.only.find(':');
+    if (colon == std::string::npos) return {};
+    return {options.only.substr(colon + 1)};
+}
+
 }  // namespace
 
 std::vector<std::string> methodNames() {
@@ -219,8 +230,10 @@ MethodChoice chooseMethod(const BrdfData& data,
                           const MethodChoiceOptions& options) {
     const std::vector<bool> all(data.incidences.size(), true);
     MethodChoice choice;
-    choice.carriers = fitCarriers(data, all, options.fit);
-    const Trials trials(data, choice.carriers, options);
+    MethodChoiceOptions how = options;
+    how.fit.families = familiesOf(options);
+    if (!how.fit.families.empty()) choice.carriers = fitCarriers(data, all, how.fit);
+    const Trials trials(data, choice.carriers, how);
     std::vector<Trials::Errors> errors;
     std::optional<std::size_t> between;
     std::optional<std::size_t> beyond;

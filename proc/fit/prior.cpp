@@ -285,6 +285,8 @@ PriorEvidence::PriorEvidence(const PriorBasis& basis,
         group.functions.conservativeResize(k, counts[g]);
         group.y.conservativeResize(counts[g]);
         group.precision = MatrixXd::Zero(k, k);
+        group.pull = VectorXd::Zero(k);
+        if (counts[g] == 0) continue;
         group.precision.selfadjointView<Eigen::Lower>().rankUpdate(group.functions);
         group.pull = group.functions * group.y;
     }
@@ -312,6 +314,7 @@ double PriorEvidence::chiSquare(const PriorPosterior& posterior) const {
     double sum = 0;
     double freedom = 0;
     for (const Group& group : groups_) {
+        if (group.y.size() == 0) continue;
         sum += (group.y - group.functions.transpose() * posterior.mean()).squaredNorm();
         // Less the effective parameters: the trace of the hat matrix.
         freedom += static_cast<double>(group.y.size()) -
