@@ -1,8 +1,10 @@
 #include "proc/estimate/carrier_fit.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "proc/core/parallel.h"
+#include "proc/fit/common_uncertainty.h"
 #include "proc/fit/model_fit.h"
 #include "proc/fit/thinned_rows.h"
 
@@ -38,6 +40,7 @@ std::optional<Carrier> fitOne(const std::string& name,
     if (!fit.usable()) return std::nullopt;
     Carrier carrier{*family, fit.point, {}};
     for (std::size_t b = 0; b < 3; ++b) {
+        carrier.commonRelative[b] = commonRelative(data, std::min(b, data.bandsUsed() - 1));
         carrier.covariance[b] = bandCovariance(fit, b, data.bandsUsed());
     }
     return carrier;

@@ -210,7 +210,10 @@ public:
     [[nodiscard]] std::string name() const override { return "model:" + carrier_.family->name(); }
     [[nodiscard]] bool anchored() const override { return false; }
     [[nodiscard]] MethodAnswer at(const LightView& pair) const override {
-        return {.f = carrier_.at(pair), .uRandom = carrier_.uAt(pair), .uSystematic = {}};
+        const LedBands f = carrier_.at(pair);
+        return {.f = f,
+                .uRandom = carrier_.uAt(pair),
+                .uSystematic = f * LedBands{carrier_.commonRelative}};
     }
 
 private:

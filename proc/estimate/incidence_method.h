@@ -62,6 +62,7 @@ struct Carrier {
     FamilyPoint point;
     /// By band, of the shared parameters and then the band's own; 0 where one is held.
     std::array<Eigen::MatrixXd, 3> covariance;
+    std::array<double, 3> commonRelative{};  ///< systematic uncertainty of the data, by band
 
     [[nodiscard]] LedBands at(const LightView& pair) const;
     /// Standard uncertainty of at() by that covariance.

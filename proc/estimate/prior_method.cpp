@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "proc/core/median.h"
+#include "proc/fit/common_uncertainty.h"
 #include "proc/fit/thinned_rows.h"
 
 namespace gonio::proc {
@@ -55,14 +55,6 @@ private:
     std::array<double, 3> commonRelative_;
 };
 
-double medianCommon(const BrdfData& data, std::size_t band) {
-    std::vector<double> relative;
-    for (const FitRow& row : data.rows) {
-        if (row.f[band] > 0) relative.push_back(row.uSystematic[band] / row.f[band]);
-    }
-    return relative.empty() ? 0 : median(relative);
-}
-
 }  // namespace
 
 SamplePrior::SamplePrior(std::shared_ptr<const PriorBasis> basis, const BrdfData& data)
@@ -75,7 +67,7 @@ SamplePrior::SamplePrior(std::shared_ptr<const PriorBasis> basis, const BrdfData
         if (evidence.empty()) continue;
         gates_[b] = priorGate(evidence, groups);
         evidence_[b] = std::move(evidence);
-        commonRelative_[b] = medianCommon(few, b);
+        commonRelative_[b] = commonRelative(few, b);
     }
 }
 

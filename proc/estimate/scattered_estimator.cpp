@@ -7,6 +7,7 @@
 
 #include "proc/core/median.h"
 #include "proc/estimate/carrier_fit.h"
+#include "proc/fit/common_uncertainty.h"
 
 namespace gonio::proc {
 namespace {
@@ -260,7 +261,6 @@ ScatteredEstimator::OneBand ScatteredEstimator::learn(const BrdfData& data,
     }
     if (sizes.empty()) return one;
     one.floor = kFloorShare * median(sizes);
-    std::vector<double> common;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
         const FitRow& row = data.rows[i];
         if (std::isnan(row.f[band])) continue;
@@ -271,11 +271,10 @@ ScatteredEstimator::OneBand ScatteredEstimator::learn(const BrdfData& data,
                                .f = row.f[band],
                                .uRandom = row.uRandom[band],
                                .uSystematic = row.uSystematic[band]});
-        if (row.f[band] > 0) common.push_back(row.uSystematic[band] / row.f[band]);
     }
     one.process = learned(one.samples);
     for (KrigingSample& sample : one.samples) sample.place = krigingPlace(one.process, sample.pair);
-    one.commonRelative = common.empty() ? 0 : median(common);
+    one.commonRelative = commonRelative(data, band);
     return one;
 }
 

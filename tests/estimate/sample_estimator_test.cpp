@@ -169,6 +169,21 @@ TEST(SampleEstimator, FillsBlockedAndSaturatedCellsFromTheOthers) {
     EXPECT_NEAR(answer.f[Band::R], plastic()->answer(pair).f[Band::R], 0.01 * answer.f[Band::R]);
 }
 
+TEST(SampleEstimator, KeepsTheSystematicUncertaintyOfWhatItWasMadeFrom) {
+    SampleSet set = plasticSample();
+    for (LedTable& led : set.leds) {
+        for (CellSamples& cells : led.bands) {
+            for (std::size_t i = 0; i < cells.size(); ++i) cells.uSystematic[i] = 0.04 * cells.f[i];
+        }
+    }
+    for (const char* method : {"model:lambert+ggx", "carried:lambert+ggx", "specular-log", "prior"}) {
+        const auto made = estimator(
+            set, {.method = method, .effort = Effort::Draft, .prior = standardPrior()});
+        const Answer answer = made->answer(pairOf(30, 50, 70));
+        EXPECT_NEAR((*answer.uSystematic)[Band::R] / answer.f[Band::R], 0.04, 0.005) << method;
+    }
+}
+
 TEST(SampleEstimator, RefusesWhatCannotBe) {
     EXPECT_EQ(SampleEstimator::over(plasticSample(), {.method = "banana"}).error().kind,
               ErrorKind::Usage);
