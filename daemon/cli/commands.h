@@ -114,6 +114,14 @@ struct EvalOptions {
 };
 Result<void> eval(const CommonOptions& common, const EvalOptions& options);
 
+struct AlbedoOptions {
+    std::string file;
+    std::string incidences;          ///< degrees with commas; empty: those of the file
+    std::string estimator = "auto";  ///< none: of a sample the sum over its cells
+};
+/// Directional-hemispherical and mean albedo, with their uncertainties and what is missing.
+Result<void> albedo(const CommonOptions& common, const AlbedoOptions& options);
+
 struct CompareOptions {
     std::string a;
     std::string b;
@@ -189,6 +197,15 @@ struct TradeInterpolationOptions {
 /// Every estimator on surfaces of known truth, between and beyond the measured angles.
 Result<void> tradeInterpolation(const CommonOptions& common,
                                 const TradeInterpolationOptions& options);
+
+struct TradeLookupOptions {
+    bool quick = false;
+    std::filesystem::path output;  ///< a folder; empty: no files
+};
+/// What baked tables err, take and weigh.
+Result<void> tradeLookup(const CommonOptions& common, const TradeLookupOptions& options);
+/// What nearest neighbours among scattered BRDF samples cost, by their number.
+Result<void> tradeNeighbours(const CommonOptions& common, const TradeLookupOptions& options);
 
 struct TradePowersOptions {
     bool quick = false;            ///< fewer powers, angles and repeats

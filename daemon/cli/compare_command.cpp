@@ -5,32 +5,17 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/cli/commands.h"
+#include "daemon/cli/incidence_list.h"
 #include "daemon/cli/output.h"
 #include "daemon/estimators.h"
 #include "proc/core/number_text.h"
 #include "proc/estimate/comparison.h"
-#include "proc/models/spec_parameters.h"
 
 namespace gonio::daemon {
 namespace {
 
 using Json = nlohmann::ordered_json;
 using proc::Difference;
-
-Result<std::vector<Radians>> incidencesOf(const std::string& list, const Estimated& a) {
-    if (list.empty()) return a.material.incidences();
-    std::vector<Radians> all;
-    for (const std::string_view word : proc::split(list, ',')) {
-        const auto degrees = parseDouble(word);
-        if (!degrees || *degrees < 0 || *degrees >= 90) {
-            return Error{ErrorKind::Usage,
-                         "compare: --incidences '" + std::string(word) +
-                             "', wanted degrees from 0 to below 90, with commas"};
-        }
-        all.push_back(Radians::fromDegrees(*degrees));
-    }
-    return all;
-}
 
 std::string shown(double fraction) { return std::isnan(fraction) ? "" : perCent(fraction); }
 
@@ -88,8 +73,9 @@ Result<void> compare(const CommonOptions& common, const CompareOptions& options)
     if (!a) return a.error().in("compare");
     const Result<Estimated> b = open(options.b);
     if (!b) return b.error().in("compare");
-    const auto incidences = incidencesOf(options.incidences, *a);
-    if (!incidences) return incidences.error();
+    const auto incidences = options.incidences.empty() ? Result(a->material.incidences())
+                                                         : incidenceList(options.incidences);
+    if (!incidences) return incidences.error().in("compare");
     const auto rows = proc::compareSurfaces(*a->scatterer, *b->scatterer, *incidences);
     if (rows.empty()) {
         return Error{ErrorKind::Quality,

@@ -37,6 +37,7 @@ struct Program {
     GoalOptions goal;
     std::string infoFile;
     EvalOptions eval;
+    AlbedoOptions albedo;
     CompareOptions compare;
     PriorOptions prior;
     ConvertOptions convert;
@@ -45,6 +46,7 @@ struct Program {
     FitOptions fit;
     TradeOptions trade;
     TradeInterpolationOptions interpolation;
+    TradeLookupOptions lookup;
     TradeNumericsOptions numerics;
     TradePowersOptions powers;
     Command chosen;
@@ -275,6 +277,16 @@ void Program::addFiles() {
                     "between and beyond the measured angles: auto, none, or a method by name");
     sub->add_option("--prior", eval.prior, "a library of `prior build`; default: the standard one");
 
+    sub = command(app, "albedo", "how much of the light a surface sends back", [this] {
+        return daemon::albedo(common, albedo);
+    });
+    sub->add_option("file", albedo.file, "a file, sample:NAME or model:SPEC")->required();
+    sub->add_option(
+        "--incidences", albedo.incidences, "degrees with commas; default: those of the file");
+    sub->add_option("--estimator",
+                    albedo.estimator,
+                    "over the whole hemisphere, by auto or a method; none: what was measured");
+
     sub = command(app, "compare", "whether two surfaces agree within their uncertainties", [this] {
         return daemon::compare(common, compare);
     });
@@ -361,6 +373,20 @@ void Program::addEvidence() {
                   [this] { return tradePowers(common, powers); });
     sub->add_flag("--quick", powers.quick, "fewer powers, angles and repeats");
     sub->add_option("-o,--output", powers.output, "folder for the tables, CSV and Markdown");
+
+    sub = command(*parent,
+                  "lookup",
+                  "errors, bytes and times of baked tables, beside a MERL table's",
+                  [this] { return tradeLookup(common, lookup); });
+    sub->add_flag("--quick", lookup.quick, "two materials, three resolutions");
+    sub->add_option("-o,--output", lookup.output, "folder for the table");
+
+    sub = command(*parent,
+                  "neighbours",
+                  "what nearest neighbours among scattered samples cost, by their number",
+                  [this] { return tradeNeighbours(common, lookup); });
+    sub->add_flag("--quick", lookup.quick, "up to 100,000 samples");
+    sub->add_option("-o,--output", lookup.output, "folder for the table and a plot");
 
     sub = command(*parent,
                   "interpolation",

@@ -139,6 +139,49 @@ TEST(Compare, TellsWhetherSurfacesAgree) {
     EXPECT_EQ(nothing.exitCode, 7) << nothing.err;
 }
 
+/// The documents of commands that answer as JSON hold to their schemas.
+Json documentOf(const Program& gonio, std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "--json");
+    const Ran ran = gonio(arguments);
+    EXPECT_EQ(ran.exitCode, 0) << ran.err;
+    Json json = Json::parse(ran.out, nullptr, false);
+    EXPECT_EQ(test::complaintsOf(json), "");
+    return json;
+}
+
+TEST(Albedo, OfAModelIsExactAndOfATableWhatItIs) {
+    const Program gonio;
+    const Json lambert =
+        documentOf(gonio, {"albedo", "model:lambert,albedo=0.5", "--incidences", "0,70"});
+    ASSERT_EQ(lambert["rows"].size(), 3U);
+    for (const Json& row : lambert["rows"]) {
+        EXPECT_NEAR(row["bands"]["g"]["albedo"].get<double>(), 0.5, 1e-6);
+        EXPECT_NEAR(row["bands"]["g"]["missing"].get<double>(), 0, 1e-9);
+    }
+    EXPECT_TRUE(lambert["rows"][2]["incidence_deg"].is_null());
+    const Ran bad = gonio({"albedo", "model:lambert,albedo=0.5", "--incidences", "95"});
+    EXPECT_EQ(bad.exitCode, 2);
+    EXPECT_NE(bad.err.find("'95'"), std::string::npos) << bad.err;
+}
+
+TEST(TradeLookup, TellsErrorsBytesAndTimes) {
+    const Program gonio;
+    const std::filesystem::path folder = gonio / "out";
+    const Json rows =
+        documentOf(gonio, {"trade", "lookup", "--quick", "-o", folder.string()})["rows"];
+    EXPECT_GT(rows.size(), 6U);
+    EXPECT_GT(test::textOf(folder / "trade-lookup.md").size(), 500U);
+}
+
+TEST(TradeNeighbours, TellsCostsByNumber) {
+    const Program gonio;
+    const std::filesystem::path folder = gonio / "out";
+    const Json rows =
+        documentOf(gonio, {"trade", "neighbours", "--quick", "-o", folder.string()})["rows"];
+    EXPECT_EQ(rows.size(), 3U);
+    EXPECT_GT(test::textOf(folder / "trade-neighbours.svg").size(), 1000U);
+}
+
 TEST(PriorBuild, WritesALibraryThatReadsBack) {
     const Program gonio;
     const std::string file = (gonio / "library.txt").string();
