@@ -29,9 +29,9 @@ Result<std::shared_ptr<const proc::PriorBasis>> priorOf(const EstimatorChoice& c
 Result<Opened> ofTheThesis(proc::SeedInterpolator interpolator,
                            const Result<proc::Scattered>& points) {
     if (!points) return points.error();
-    auto made = proc::makeSeed004(points->set,
-                                  {.interpolator = interpolator,
-                                   .gridFilledBy = proc::SeedInterpolator::AxisLinear});
+    auto made = proc::makeSeed004(
+        points->set,
+        {.interpolator = interpolator, .gridFilledBy = proc::SeedInterpolator::AxisLinear});
     if (!made) return made.error();
     return Opened(std::move(*made));
 }
@@ -55,11 +55,11 @@ Result<Estimated> ofMaterial(Material material, const EstimatorChoice& choice) {
     auto prior = priorOf(choice);
     if (!prior) return prior.error();
     options.prior = std::move(*prior);
-    proc::BrdfData data = material.sample != nullptr
-                              ? proc::fitDataOf(*material.sample)
-                              : proc::gridDataOf(*material.scatterer,
-                                                 material.incidences(),
-                                                 {.assumedRelative = kAssumed});
+    proc::BrdfData data =
+        material.sample != nullptr
+            ? proc::fitDataOf(*material.sample)
+            : proc::gridDataOf(
+                  *material.scatterer, material.incidences(), {.assumedRelative = kAssumed});
     auto made = proc::SampleEstimator::over(material.scatterer, std::move(data), options);
     if (!made) return made.error();
     const proc::SampleEstimator* chosen = made->get();

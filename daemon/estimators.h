@@ -1,6 +1,7 @@
 #pragma once
 // --estimator: how a file is asked between and beyond what was measured.
-//   auto        what predicts the sample best (proc/estimate/sample_estimator.h); of scattered values
+//   auto        what predicts the sample best (proc/estimate/sample_estimator.h); of scattered
+//   values
 //               kriging (scattered_estimator.h)
 //   none        the look-up alone: no answer beyond the angles of the file
 //   shepard, axis-linear, grid-linear   the thesis's (proc/estimate/seed004.h)
@@ -25,7 +26,7 @@ struct EstimatorChoice {
 
 struct Estimated {
     std::shared_ptr<const Scatterer> scatterer;  ///< shared with what it was made over
-    Material material;                           ///< the file's own; empty kind for scattered values
+    Material material;  ///< the file's own; empty kind for scattered values
     /// Of the scatterer, where it chooses; else null.
     const proc::SampleEstimator* sample = nullptr;
 };

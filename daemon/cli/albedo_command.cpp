@@ -41,11 +41,10 @@ std::vector<AlbedoRow> ofHemisphere(const Scatterer& surface,
         const Direction wi = Direction::fromSpherical(incidence, Radians(0));
         rows.push_back({incidence, proc::directionalAlbedo(surface, wi, options)});
     }
-    rows.push_back({std::nullopt,
-                    proc::meanAlbedo(surface,
-                                     {.directional = options,
-                                      .tolerance = 1e-3,
-                                      .mostIncidences = 15})});
+    rows.push_back(
+        {std::nullopt,
+         proc::meanAlbedo(surface,
+                          {.directional = options, .tolerance = 1e-3, .mostIncidences = 15})});
     return rows;
 }
 
@@ -100,9 +99,8 @@ Result<void> albedo(const CommonOptions& common, const AlbedoOptions& options) {
                      "albedo: --estimator none sums the cells of the LEDs' own incidences; leave "
                      "--incidences out"};
     }
-    const auto incidences = options.incidences.empty()
-                                ? Result(opened->material.incidences())
-                                : incidenceList(options.incidences);
+    const auto incidences = options.incidences.empty() ? Result(opened->material.incidences())
+                                                       : incidenceList(options.incidences);
     if (!incidences) return incidences.error().in("albedo");
     const auto rows = cells ? ofCells(*sample) : ofHemisphere(*opened->scatterer, *incidences);
     if (common.json) {

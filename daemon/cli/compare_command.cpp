@@ -74,7 +74,7 @@ Result<void> compare(const CommonOptions& common, const CompareOptions& options)
     const Result<Estimated> b = open(options.b);
     if (!b) return b.error().in("compare");
     const auto incidences = options.incidences.empty() ? Result(a->material.incidences())
-                                                         : incidenceList(options.incidences);
+                                                       : incidenceList(options.incidences);
     if (!incidences) return incidences.error().in("compare");
     const auto rows = proc::compareSurfaces(*a->scatterer, *b->scatterer, *incidences);
     if (rows.empty()) {
@@ -99,9 +99,7 @@ Result<void> compare(const CommonOptions& common, const CompareOptions& options)
         case proc::Agreement::Agree:
             std::cout << "They agree: 90 % or more of the values lie within twice their u.\n";
             break;
-        case proc::Agreement::Disagree:
-            std::cout << "They do not agree within their u.\n";
-            break;
+        case proc::Agreement::Disagree: std::cout << "They do not agree within their u.\n"; break;
         case proc::Agreement::Unknown:
             std::cout << "Whether they agree cannot be said: too few values have an uncertainty.\n";
             break;

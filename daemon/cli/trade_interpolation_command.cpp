@@ -117,13 +117,11 @@ Result<void> drawLobes(const std::filesystem::path& folder) {
          {std::pair("metal .1", 30), std::pair("plastic .1", 50), std::pair("plastic .1", 70)}) {
         for (const proc::StudyMaterial& one : materials) {
             if (one.name != material) continue;
-            const auto curves = proc::lobeCurves(one,
-                                                 Radians::fromDegrees(degrees),
-                                                 {"specular-linear", "grid-linear", "auto"});
+            const auto curves = proc::lobeCurves(
+                one, Radians::fromDegrees(degrees), {"specular-linear", "grid-linear", "auto"});
             const std::string at = std::to_string(degrees);
-            const std::string picture =
-                proc::lobePlot(one.name + " at " + at + " degrees, measured at 0, 20, 40 and 60",
-                               curves);
+            const std::string picture = proc::lobePlot(
+                one.name + " at " + at + " degrees, measured at 0, 20, 40 and 60", curves);
             std::string file = "lobe-" + one.name + "-" + at + ".svg";
             std::replace(file.begin(), file.end(), ' ', '-');
             if (auto done = proc::writeFile(folder / file, picture); !done) return done;
@@ -146,12 +144,11 @@ Result<void> tradeInterpolation(const CommonOptions& common,
         if (auto made = makeOutputFolder(options.output); !made)
             return made.error().in("trade interpolation");
     }
-    const auto rows = proc::interpolationTable(
-        {.relativeNoise = *noise, .quick = options.quick},
-        driver::SteadyClock(),
-        [&](const std::string& what) {
-            if (!common.quiet) std::cerr << what << "\n";
-        });
+    const auto rows = proc::interpolationTable({.relativeNoise = *noise, .quick = options.quick},
+                                               driver::SteadyClock(),
+                                               [&](const std::string& what) {
+                                                   if (!common.quiet) std::cerr << what << "\n";
+                                               });
     const Rows inside = summaryRows(rows, true);
     const Rows outside = summaryRows(rows, false);
     if (!options.output.empty()) {

@@ -44,8 +44,7 @@ Json toJson(const proc::NeighbourCost& row) {
 }  // namespace
 
 Result<void> tradeLookup(const CommonOptions& common, const TradeLookupOptions& options) {
-    if (auto made = makeOutputFolder(options.output); !made)
-        return made.error().in("trade lookup");
+    if (auto made = makeOutputFolder(options.output); !made) return made.error().in("trade lookup");
     const driver::SteadyClock clock;
     const auto rows = proc::lookupStudy(
         options.quick ? proc::LookupSweep::quick() : proc::LookupSweep::full(), Stopwatch(clock));

@@ -16,7 +16,7 @@ using Carriers = std::map<std::string, Carrier>;
 [[nodiscard]] const std::vector<std::string>& carrierFamilies();
 
 struct CarrierFitOptions {
-    std::size_t rows = 1500;              ///< of the data, thinned
+    std::size_t rows = 1500;  ///< of the data, thinned
     int maxIterations = 40;
     double tolerance = 1e-8;              ///< relative change of the cost that ends the search
     const Carriers* startedAt = nullptr;  ///< fits to more data, from which to start

@@ -2,9 +2,9 @@
 // Whether two surfaces agree: their difference at the cells of one incidence after another, in
 // several measures, by region about the mirror direction, and against their uncertainties.
 //
-// In units of the combined u = hypot(u_a, u_b): `within2u` near 0.95 says that they agree as well as
-// their uncertainties claim. u_systematic is common to many cells, so that a share of 0.7 or 1 can be
-// one error of the scale.
+// In units of the combined u = hypot(u_a, u_b): `within2u` near 0.95 says that they agree as well
+// as their uncertainties claim. u_systematic is common to many cells, so that a share of 0.7 or 1
+// can be one error of the scale.
 
 #include <string>
 #include <vector>
@@ -28,13 +28,13 @@ struct Difference {
     Radians incidence;
     std::string region;
     Band band = Band::R;
-    std::size_t values = 0;    ///< where both answer
-    std::size_t oneOnly = 0;   ///< where one of them does
-    double relativeRms = 0;    ///< of (a - b) / b
-    double relativeMean = 0;   ///< of (a - b) over that of b
-    double logRms = 0;         ///< of ln(a / b), where both are positive
-    double cosineRms = 0;      ///< of (a - b) cos(theta_o) over that of b cos(theta_o)
-    double within2u = 0;       ///< share of values within twice the combined u; NaN: no u
+    std::size_t values = 0;      ///< where both answer
+    std::size_t oneOnly = 0;     ///< where one of them does
+    double relativeRms = 0;      ///< of (a - b) / b
+    double relativeMean = 0;     ///< of (a - b) over that of b
+    double logRms = 0;           ///< of ln(a / b), where both are positive
+    double cosineRms = 0;        ///< of (a - b) cos(theta_o) over that of b cos(theta_o)
+    double within2u = 0;         ///< share of values within twice the combined u; NaN: no u
     double meanSquareOverU = 0;  ///< of (a - b) / u; NaN: no u
 };
 

@@ -1,6 +1,6 @@
 #pragma once
-// Where, on the sheet of another incidence, the direction lies that corresponds to a given one: what
-// an interpolation between incidences keeps fixed while wi moves.
+// Where, on the sheet of another incidence, the direction lies that corresponds to a given one:
+// what an interpolation between incidences keeps fixed while wi moves.
 //   SameDirection     wo itself. A lobe appears twice.
 //   SpecularRelative  polar coordinates about the mirror direction (proc/core/coordinates.h), as
 //                     Zemax and seed 004 do.

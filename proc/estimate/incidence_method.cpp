@@ -46,8 +46,7 @@ public:
         switch (quantity_) {
             case SheetQuantity::F: break;
             case SheetQuantity::LogF:
-            case SheetQuantity::LogFCosines:
-                return scale_ / std::hypot(f * scale_, 2 * kLogFloor);
+            case SheetQuantity::LogFCosines: return scale_ / std::hypot(f * scale_, 2 * kLogFloor);
             case SheetQuantity::RatioToModel: return 1 / model_;
         }
         return 1;
@@ -153,7 +152,9 @@ private:
     }
 
     /// Rows that are no cells count for the cell that they lie in, as their mean.
-    [[nodiscard]] Sheet::Cells cellsOf(const BrdfData& data, std::size_t group, std::size_t band) const {
+    [[nodiscard]] Sheet::Cells cellsOf(const BrdfData& data,
+                                       std::size_t group,
+                                       std::size_t band) const {
         Sheet::Cells cells = Sheet::Cells::missing();
         std::vector<double> count(cells.value.size(), 0.0);
         const double cosThetaI = cos(data.incidences[group]);

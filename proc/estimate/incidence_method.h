@@ -3,8 +3,8 @@
 // interpolates with, measured baselines and its own, comes as one of these.
 //
 // A method answers for every pair above the horizon. Within the incidences that were measured it
-// interpolates, beyond the first and the last it stays at that sheet; how far an answer is from what
-// was measured is the caller's to judge (coverage.h). The sample is isotropic.
+// interpolates, beyond the first and the last it stays at that sheet; how far an answer is from
+// what was measured is the caller's to judge (coverage.h). The sample is isotropic.
 
 #include <Eigen/Core>
 #include <array>
@@ -46,7 +46,8 @@ public:
 enum class SheetQuantity {
     F,            ///< f
     LogF,         ///< ln f, as asinh(f / (2 e)), e = 1e-5 / sr: noise about zero has a value
-    LogFCosines,  ///< likewise of f cos(theta_i) cos(theta_o): the microfacet's cross-section is out
+    LogFCosines,  ///< likewise of f cos(theta_i) cos(theta_o): the microfacet's cross-section is
+                  ///< out
     RatioToModel  ///< (f + c) / (model + c), c = 1e-6 / sr, of a fitted model, which carries it
 };
 

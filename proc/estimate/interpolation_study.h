@@ -23,7 +23,8 @@ struct SyntheticOptions {
 };
 
 /// Means over the cells by 4 x 4 Gauss nodes; u_random as the noise, u_systematic 0.
-[[nodiscard]] SampleSet syntheticSample(const Scatterer& truth, const SyntheticOptions& options = {});
+[[nodiscard]] SampleSet syntheticSample(const Scatterer& truth,
+                                        const SyntheticOptions& options = {});
 
 /// Relative error of f, root mean square over directions weighted by solid angle; directions darker
 /// than 1e-5 / sr do not count.

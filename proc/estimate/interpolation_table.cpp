@@ -40,8 +40,7 @@ Made ofTheThesis(const SampleSet& set, SeedInterpolator interpolator) {
     const auto points = scatteredOf(set);
     if (!points) return nullptr;
     auto made = makeSeed004(
-        points->set,
-        {.interpolator = interpolator, .gridFilledBy = SeedInterpolator::AxisLinear});
+        points->set, {.interpolator = interpolator, .gridFilledBy = SeedInterpolator::AxisLinear});
     return made ? Made(std::move(*made)) : nullptr;
 }
 

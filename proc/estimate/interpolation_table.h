@@ -32,7 +32,7 @@ struct InterpolationRow {
 
 struct InterpolationOptions {
     double relativeNoise = 0;
-    bool quick = false;  ///< four materials, every 37th cell instead of every 7th
+    bool quick = false;                  ///< four materials, every 37th cell instead of every 7th
     std::vector<std::string> methods{};  ///< empty: all
 };
 

@@ -263,9 +263,9 @@ MethodChoice chooseMethod(const BrdfData& data,
         choice.beyond = choice.between;
     }
     std::stable_sort(
-        choice.scores.begin(),
-        choice.scores.end(),
-        [](const MethodScore& a, const MethodScore& b) { return a.between() < b.between(); });
+        choice.scores.begin(), choice.scores.end(), [](const MethodScore& a, const MethodScore& b) {
+            return a.between() < b.between();
+        });
     return choice;
 }
 

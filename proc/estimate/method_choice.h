@@ -1,9 +1,10 @@
 #pragma once
-// Which method suits a sample, asked of the sample itself: each incidence between two others is left
-// out in turn and predicted from the rest by every candidate (trial.h), and the one that is least
-// wrong is taken. Beyond the angles that were measured another may be better: of those that are made
-// for it, the one that predicts best the last incidence and the outermost 15 degrees of theta_o when
-// these are left out. What both were wrong by says how wrong they may be elsewhere (error_model.h).
+// Which method suits a sample, asked of the sample itself: each incidence between two others is
+// left out in turn and predicted from the rest by every candidate (trial.h), and the one that is
+// least wrong is taken. Beyond the angles that were measured another may be better: of those that
+// are made for it, the one that predicts best the last incidence and the outermost 15 degrees of
+// theta_o when these are left out. What both were wrong by says how wrong they may be elsewhere
+// (error_model.h).
 //
 // Candidates: log interpolation in specular-relative, direction-cosine and half-vector frames, and
 // cubic; the fitted model of each carrier family, alone and carrying the ratio of the data to it;
@@ -29,9 +30,9 @@ namespace gonio::proc {
 /// Relative errors, root mean square less the noise.
 struct MethodScore {
     std::string name;
-    double hemisphere = 0;          ///< at incidences that were left out
-    double lobe = 0;                ///< there where f is above a tenth of its largest
-    std::optional<double> beyond;   ///< at the last incidence and the edge, left out
+    double hemisphere = 0;         ///< at incidences that were left out
+    double lobe = 0;               ///< there where f is above a tenth of its largest
+    std::optional<double> beyond;  ///< at the last incidence and the edge, left out
     [[nodiscard]] double between() const { return std::hypot(hemisphere, lobe); }
 };
 

@@ -1,8 +1,8 @@
 #pragma once
-// A method asked both ways: at (wi, wo) and, as f is the same with light and view exchanged, at (wo,
-// wi). What was measured at 20 and 40 degrees then answers exactly wherever theta_o is one of
-// these, and beyond the last incidence wherever theta_o lies within. The two are weighted by how far
-// each reaches beyond what was measured:
+// A method asked both ways: at (wi, wo) and, as f is the same with light and view exchanged, at
+// (wo, wi). What was measured at 20 and 40 degrees then answers exactly wherever theta_o is one of
+// these, and beyond the last incidence wherever theta_o lies within. The two are weighted by how
+// far each reaches beyond what was measured:
 //   w = 1 / (between^2 + (degrees beyond the incidences / 5)^2 + (steps / 3)^2 + 1e-6),
 // so that at an incidence that was measured its own values stand to 1e-6. A method that is not
 // anchored is reciprocal by itself and is asked once.

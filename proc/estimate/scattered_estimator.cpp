@@ -56,15 +56,14 @@ double matern(double distance) {
 /// view does not keep distances.
 double alike(const KrigingPlace& a, const KrigingPlace& b) {
     const auto of = [](const Place& p, const Place& q) { return matern((p - q).norm()); };
-    return (of(a.straight, b.straight) + of(a.straight, b.exchanged) +
-            of(a.exchanged, b.straight) + of(a.exchanged, b.exchanged)) /
+    return (of(a.straight, b.straight) + of(a.straight, b.exchanged) + of(a.exchanged, b.straight) +
+            of(a.exchanged, b.exchanged)) /
            (a.scale * b.scale);
 }
 
 KrigingPlace krigingPlace(const Process& process, const LightView& pair) {
-    KrigingPlace place{placeOf(process, pair),
-                       placeOf(process, {.in = pair.out, .out = pair.in}),
-                       1};
+    KrigingPlace place{
+        placeOf(process, pair), placeOf(process, {.in = pair.out, .out = pair.in}), 1};
     place.scale = std::sqrt(2 + 2 * matern((place.straight - place.exchanged).norm()));
     return place;
 }
@@ -106,7 +105,8 @@ LeftOut leaveOneOut(MatrixXd matrix, double noise, const VectorXd& y) {
 /// What is known of a band, to learn the process from.
 class Learning {
 public:
-    Learning(std::vector<LightView> pairs, VectorXd y) : pairs_(std::move(pairs)), y_(std::move(y)) {}
+    Learning(std::vector<LightView> pairs, VectorXd y)
+        : pairs_(std::move(pairs)), y_(std::move(y)) {}
 
     /// One property after the other, twice: the best of its values with the others held.
     [[nodiscard]] Process best() {
@@ -197,11 +197,14 @@ struct Near {
     VectorXd alike;
 };
 
-Near nearest(const std::vector<KrigingSample>& samples, const KrigingPlace& here, std::size_t count) {
+Near nearest(const std::vector<KrigingSample>& samples,
+             const KrigingPlace& here,
+             std::size_t count) {
     std::vector<std::pair<double, std::size_t>> order(samples.size());
     for (std::size_t i = 0; i < samples.size(); ++i) order[i] = {-alike(here, samples[i].place), i};
     count = std::min(count, order.size());
-    std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count), order.end());
+    std::partial_sort(
+        order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count), order.end());
     Near near;
     near.alike.resize(static_cast<Index>(count));
     for (std::size_t i = 0; i < count; ++i) {
@@ -247,7 +250,8 @@ Result<std::unique_ptr<const ScatteredEstimator>> ScatteredEstimator::over(
     std::unique_ptr<ScatteredEstimator> made(new ScatteredEstimator(*carrier, data.bands));
     made->neighbours_ = std::max<std::size_t>(1, options.neighbours);
     const std::vector<LightView> pairs = pairsOf(data);
-    for (std::size_t b = 0; b < data.bandsUsed(); ++b) made->bandsOf_[b] = made->learn(data, pairs, b);
+    for (std::size_t b = 0; b < data.bandsUsed(); ++b)
+        made->bandsOf_[b] = made->learn(data, pairs, b);
     return std::unique_ptr<const ScatteredEstimator>(std::move(made));
 }
 

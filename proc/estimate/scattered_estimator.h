@@ -6,13 +6,14 @@
 // disc, rho = sqrt(2) sin(theta / 2), which is drawn out towards grazing (rho (1 + g rho^6)), and x
 // counted from the mirror direction, where that predicts better.
 // Covariance of two pairs: Matern's of order 5/2 of their distance, averaged over exchanging light
-// and view of either. Its length, the weight of rho_i and the noise are those under which each of at most
-// 300 samples is predicted best from the others (leave-one-out likelihood [Rasmussen2006, ch. 5]).
+// and view of either. Its length, the weight of rho_i and the noise are those under which each of
+// at most 300 samples is predicted best from the others (leave-one-out likelihood [Rasmussen2006,
+// ch. 5]).
 //
-// At a sample itself: as it was given, source measured. Elsewhere: interpolated; u_systematic is the
-// process's own standard deviation (its noise is found from the data) and the samples' common one.
-// Beyond what was sampled the ratio returns to 1 and its deviation to that of all ratios: source
-// model, flag extrapolated, from where it knows less than half of their variance.
+// At a sample itself: as it was given, source measured. Elsewhere: interpolated; u_systematic is
+// the process's own standard deviation (its noise is found from the data) and the samples' common
+// one. Beyond what was sampled the ratio returns to 1 and its deviation to that of all ratios:
+// source model, flag extrapolated, from where it knows less than half of their variance.
 
 #include <Eigen/Core>
 #include <array>

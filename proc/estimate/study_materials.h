@@ -17,9 +17,9 @@ namespace gonio::proc {
 
 struct StudyMaterial {
     std::string name;
-    std::string spec;     ///< a model's spec, or the formula's parameters
-    bool inFamily;        ///< of Lambert and GGX
-    bool inLibrary;       ///< of the families that the prior is drawn from
+    std::string spec;                        ///< a model's spec, or the formula's parameters
+    bool inFamily;                           ///< of Lambert and GGX
+    bool inLibrary;                          ///< of the families that the prior is drawn from
     std::shared_ptr<const Scatterer> truth;  ///< shared by the runs of a study
 };
 

@@ -124,8 +124,7 @@ std::vector<ProbeError> Trial::errorsOf(const IncidenceMethod& method) const {
     std::vector<RowAnswer> answers(probes_.size());
     parallelFor(probes_.size(), [&](IndexRange range) {
         for (std::size_t i = range.begin; i < range.end; ++i) {
-            answers[i] =
-                rowAnswer(method, coverage_, data_->nodesOf(data_->rows[probes_[i].row]));
+            answers[i] = rowAnswer(method, coverage_, data_->nodesOf(data_->rows[probes_[i].row]));
         }
     });
     std::vector<std::array<double, 3>> peaks(data_->incidences.size(), {0, 0, 0});

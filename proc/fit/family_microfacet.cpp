@@ -58,10 +58,9 @@ struct RetroLobes {
     static constexpr int kPerBand = 3;
     template <class P>
     static auto kernel(const P* shared, const Bands<P>* perBand) {
-        return BothKernels{
-            Lambert<P>{perBand[0]},
-            BothKernels{lobe<Ggx>(shared[0], perBand[1]),
-                        Lafortune<P>{perBand[2], P(1), P(1), shared[1]}}};
+        return BothKernels{Lambert<P>{perBand[0]},
+                           BothKernels{lobe<Ggx>(shared[0], perBand[1]),
+                                       Lafortune<P>{perBand[2], P(1), P(1), shared[1]}}};
     }
 };
 

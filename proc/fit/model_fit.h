@@ -50,8 +50,8 @@ struct ModelFitOptions {
     std::size_t startRows = 400;
     std::size_t heldOutRows = 2000;  ///< rows of a refit without one incidence; 0: none of these
     int maxIterations = 100;
-    double tolerance = 1e-12;           ///< relative change of the cost that ends the search
-    std::optional<FamilyPoint> start;   ///< refined instead of the grid's points
+    double tolerance = 1e-12;          ///< relative change of the cost that ends the search
+    std::optional<FamilyPoint> start;  ///< refined instead of the grid's points
 };
 
 struct FittedParameter {

@@ -61,7 +61,9 @@ GridPlace placeOf(const Pair<double>& pair) {
     return {bin(h, kHalf), bin(d, kDifference), bin(a, kAzimuth)};
 }
 
-double logOf(double f, double cosines) { return std::log(std::max(f, 0.0) * cosines + kPriorFloor); }
+double logOf(double f, double cosines) {
+    return std::log(std::max(f, 0.0) * cosines + kPriorFloor);
+}
 
 /// Pairs as arrays of components.
 struct PairColumns {
@@ -234,7 +236,8 @@ double PriorBasis::restVariance(const Pair<double>& pair) const {
     double most = 0;
     for (std::size_t h = at.half - std::min<std::size_t>(at.half, 2); h <= at.half; ++h) {
         for (std::size_t d = at.difference - std::min<std::size_t>(at.difference, 1);
-             d <= at.difference; ++d) {
+             d <= at.difference;
+             ++d) {
             for (std::size_t a = 0; a < kAzimuth; ++a) {
                 const double rest = rest_[indexOf({h, d, a})];
                 if (!std::isnan(rest)) most = std::max(most, rest);

@@ -70,10 +70,12 @@ double widthOf(const std::string& spec) {
     double width = 1;
     for (const std::string key : {"alpha=", "m=", "roughness="}) {
         const std::size_t at = spec.find(key);
-        if (at != std::string::npos) width = std::min(width, std::stod(spec.substr(at + key.size())));
+        if (at != std::string::npos)
+            width = std::min(width, std::stod(spec.substr(at + key.size())));
     }
     const std::size_t n = spec.find(",n=");
-    if (n != std::string::npos) width = std::min(width, std::sqrt(0.5 / std::stod(spec.substr(n + 3))));
+    if (n != std::string::npos)
+        width = std::min(width, std::sqrt(0.5 / std::stod(spec.substr(n + 3))));
     return width;
 }
 

@@ -2,10 +2,10 @@
 // Microfacet reflection with the generalised Trowbridge-Reitz distribution of normals [Burley2012,
 // app. B.2]: gamma 2 is GGX, 1 the clearcoat's, less than 2 has longer tails, more shorter ones.
 //   D(h) = peak (alpha^2 / (sin^2 + alpha^2 cos^2))^gamma,
-//   peak = (gamma - 1) (1 - alpha^2) / (pi (alpha^2 - alpha^(2 gamma))), its limits at gamma = 1 and
-//   at alpha = 1: the integral of D cos(theta_h) is 1.
-// alpha in [1e-7, 1], gamma in [0.5, 10]. There is no closed form of Smith's masking for it: GGX's of
-// the same alpha stands in, as Burley does. Reciprocal. Single scattering only.
+//   peak = (gamma - 1) (1 - alpha^2) / (pi (alpha^2 - alpha^(2 gamma))), its limits at gamma = 1
+//   and at alpha = 1: the integral of D cos(theta_h) is 1.
+// alpha in [1e-7, 1], gamma in [0.5, 10]. There is no closed form of Smith's masking for it: GGX's
+// of the same alpha stands in, as Burley does. Reciprocal. Single scattering only.
 
 #include "proc/models/masking.h"
 #include "proc/models/sampling.h"
@@ -23,8 +23,8 @@ template <class P>
     // Near alpha = 1 both differences below vanish: their quotient as a series.
     if (logA2 > P(-1e-4)) {
         const P q = power * logA2;
-        const P quotient = (P(1) + logA2 / P(2) + logA2 * logA2 / P(6)) /
-                           (P(1) + q / P(2) + q * q / P(6));
+        const P quotient =
+            (P(1) + logA2 / P(2) + logA2 * logA2 / P(6)) / (P(1) + q / P(2) + q * q / P(6));
         return quotient / (P(kPi) * alpha * alpha);
     }
     // (1 - alpha^(2 (gamma - 1))) / (gamma - 1), without a difference.

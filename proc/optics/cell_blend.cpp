@@ -31,9 +31,7 @@ CellBlend::CellBlend(const Direction& wo) {
     // Below the first row's centre the other side of the pole is the neighbour.
     const bool pole = rows.low < 0;
     const int last = CellGrid::kRows - 1;
-    addRow(pole ? 0 : std::min(rows.low, last),
-           pole ? phi + Radians(kPi) : phi,
-           1 - rows.fraction);
+    addRow(pole ? 0 : std::min(rows.low, last), pole ? phi + Radians(kPi) : phi, 1 - rows.fraction);
     addRow(std::min(rows.low + 1, last), phi, rows.fraction);
 }
 

@@ -76,7 +76,8 @@ void drawAxes(Svg& svg, const Range& range) {
         svg.line(foot, range.at(degrees, roof), {.colour = "#eee"});
         svg.text({foot.x, foot.y + 16}, fixed(degrees, 0), Anchor::Middle);
     }
-    svg.text({kWidth / 2, kHeight - 8}, "theta_o in the plane of incidence, degrees", Anchor::Middle);
+    svg.text(
+        {kWidth / 2, kHeight - 8}, "theta_o in the plane of incidence, degrees", Anchor::Middle);
     svg.text({8, kTop - 8}, "f, 1/sr");
 }
 

@@ -1,7 +1,8 @@
 #pragma once
-// A lobe between the incidences that were measured: the truth and what methods make of it, f against
-// signed theta_o in the plane of incidence, f on a logarithmic axis. The truth is drawn broad and
-// grey below the others. A gap is a direction without an answer or without a positive one.
+// A lobe between the incidences that were measured: the truth and what methods make of it, f
+// against signed theta_o in the plane of incidence, f on a logarithmic axis. The truth is drawn
+// broad and grey below the others. A gap is a direction without an answer or without a positive
+// one.
 
 #include <string>
 #include <vector>

@@ -23,9 +23,9 @@ const std::vector<SheetQuantity> kQuantities{
     SheetQuantity::F, SheetQuantity::LogF, SheetQuantity::LogFCosines};
 
 LightView pairOf(double thetaI, double thetaO, double phiO) {
-    return {.in = Direction::fromSpherical(Radians::fromDegrees(thetaI), 0_deg),
-            .out = Direction::fromSpherical(Radians::fromDegrees(thetaO),
-                                            Radians::fromDegrees(phiO))};
+    return {
+        .in = Direction::fromSpherical(Radians::fromDegrees(thetaI), 0_deg),
+        .out = Direction::fromSpherical(Radians::fromDegrees(thetaO), Radians::fromDegrees(phiO))};
 }
 
 TEST(IncidenceFrame, MovesTheMirrorDirectionToTheMirrorDirection) {
@@ -61,7 +61,8 @@ TEST(SheetMethod, ReproducesAConstantBetweenAndBeyond) {
     const auto data = fitDataOf(test::sampleSet([](Radians, const Direction&) { return 0.2; }));
     for (const IncidenceFrame frame : kFrames) {
         for (const IncidenceCurve curve : {IncidenceCurve::Linear, IncidenceCurve::CatmullRom}) {
-            const auto method = sheetMethod(data, kAll, {.name = "x", .frame = frame, .curve = curve});
+            const auto method =
+                sheetMethod(data, kAll, {.name = "x", .frame = frame, .curve = curve});
             for (const double thetaI : {0.0, 7.0, 20.0, 33.0, 59.0, 60.0, 75.0}) {
                 const MethodAnswer answer = method->at(pairOf(thetaI, 50, 77));
                 EXPECT_NEAR(answer.f[Band::R], 0.2, 1e-12);
@@ -126,7 +127,8 @@ TEST(ReciprocalAnswer, IsTheSameBothWays) {
     const Coverage coverage(data, kAll);
     std::mt19937_64 random(7);
     for (int i = 0; i < 200; ++i) {
-        const LightView pair{.in = test::randomDirection(random), .out = test::randomDirection(random)};
+        const LightView pair{.in = test::randomDirection(random),
+                             .out = test::randomDirection(random)};
         const auto there = reciprocalAnswer(*method, coverage, pair);
         const auto back = reciprocalAnswer(*method, coverage, {.in = pair.out, .out = pair.in});
         EXPECT_NEAR(there.value.f[Band::R], back.value.f[Band::R], 1e-9);

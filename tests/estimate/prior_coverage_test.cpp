@@ -69,8 +69,8 @@ TEST(PriorCoverage, IsWhatItSaysForMaterialsItHasNotSeen) {
         if (prior.passes()) add(tally, *truth, prior, seed);
     }
     const double coverage = tally.within / tally.values;
-    std::cout << "gate passed by " << tally.passed << " of " << count << "; within 1.96 u: "
-              << 100 * coverage << " % of " << tally.values << "\n";
+    std::cout << "gate passed by " << tally.passed << " of " << count
+              << "; within 1.96 u: " << 100 * coverage << " % of " << tally.values << "\n";
     EXPECT_GE(tally.passed, static_cast<int>(0.85 * static_cast<double>(count)));
     // Answers of one material err together: twelve of them say less.
     EXPECT_GT(coverage, nightly ? 0.93 : 0.88);

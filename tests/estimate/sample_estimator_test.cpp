@@ -14,9 +14,9 @@ namespace gonio::proc {
 namespace {
 
 LightView pairOf(double thetaI, double thetaO, double phiO) {
-    return {.in = Direction::fromSpherical(Radians::fromDegrees(thetaI), 0_deg),
-            .out = Direction::fromSpherical(Radians::fromDegrees(thetaO),
-                                            Radians::fromDegrees(phiO))};
+    return {
+        .in = Direction::fromSpherical(Radians::fromDegrees(thetaI), 0_deg),
+        .out = Direction::fromSpherical(Radians::fromDegrees(thetaO), Radians::fromDegrees(phiO))};
 }
 
 std::unique_ptr<const AnalyticModel> plastic() {
@@ -29,7 +29,8 @@ SampleSet plasticSample() {
     return set;
 }
 
-std::unique_ptr<const SampleEstimator> estimator(SampleSet set, SampleEstimatorOptions options = {}) {
+std::unique_ptr<const SampleEstimator> estimator(SampleSet set,
+                                                 SampleEstimatorOptions options = {}) {
     auto made = SampleEstimator::over(std::move(set), std::move(options));
     EXPECT_TRUE(made) << made.error().message;
     return std::move(*made);
@@ -83,10 +84,10 @@ TEST(SampleEstimator, IsRightBetweenAndBeyondTheAngles) {
     EXPECT_EQ(between.unanswered, 0);
     const RegionError steep = errorOf(ofPlastic(), *truth, {.incidences = {70_deg}, .stride = 29});
     EXPECT_LT(steep.hemisphere, 0.02);
-    const RegionError grazing = errorOf(
-        ofPlastic(),
-        *truth,
-        {.incidences = {20_deg, 40_deg}, .firstRow = 80, .lastRow = 85, .stride = 29});
+    const RegionError grazing =
+        errorOf(ofPlastic(),
+                *truth,
+                {.incidences = {20_deg, 40_deg}, .firstRow = 80, .lastRow = 85, .stride = 29});
     EXPECT_LT(grazing.hemisphere, 0.03);
 }
 
@@ -119,10 +120,11 @@ TEST(SampleEstimator, SaysWhereAnAnswerComesFrom) {
     const Answer beyond = carried->answer(pairOf(85, 85, 180));
     EXPECT_EQ(beyond.source, Source::Model);
     EXPECT_TRUE(beyond.flags.has(Flag::Extrapolated));
-    const auto sheets = estimator(plasticSample(), {.method = "specular-log", .effort = Effort::Draft});
+    const auto sheets =
+        estimator(plasticSample(), {.method = "specular-log", .effort = Effort::Draft});
     EXPECT_EQ(sheets->answer(pairOf(85, 85, 180)).source, Source::Extrapolated);
-    const auto prior = estimator(plasticSample(),
-                                 {.method = "prior", .effort = Effort::Draft, .prior = standardPrior()});
+    const auto prior = estimator(
+        plasticSample(), {.method = "prior", .effort = Effort::Draft, .prior = standardPrior()});
     EXPECT_EQ(prior->answer(pairOf(30, 50, 70)).source, Source::Prior);
     EXPECT_TRUE(prior->answer(pairOf(30, 50, 70)).flags.has(Flag::Prior));
 }
@@ -132,7 +134,8 @@ TEST(SampleEstimator, DoesNotJumpAtTheEdgesOfWhatWasMeasured) {
         for (const double other : {13.0, 33.0, 71.0}) {
             for (const double step : {1e-7, -1e-7}) {
                 const double low = ofPlastic().answer(pairOf(edge + step, other, 150)).f[Band::R];
-                const double high = ofPlastic().answer(pairOf(edge + 2 * step, other, 150)).f[Band::R];
+                const double high =
+                    ofPlastic().answer(pairOf(edge + 2 * step, other, 150)).f[Band::R];
                 EXPECT_NEAR(low, high, 1e-5 * low) << edge << " " << other;
             }
         }
@@ -176,9 +179,10 @@ TEST(SampleEstimator, KeepsTheSystematicUncertaintyOfWhatItWasMadeFrom) {
             for (std::size_t i = 0; i < cells.size(); ++i) cells.uSystematic[i] = 0.04 * cells.f[i];
         }
     }
-    for (const char* method : {"model:lambert+ggx", "carried:lambert+ggx", "specular-log", "prior"}) {
-        const auto made = estimator(
-            set, {.method = method, .effort = Effort::Draft, .prior = standardPrior()});
+    for (const char* method :
+         {"model:lambert+ggx", "carried:lambert+ggx", "specular-log", "prior"}) {
+        const auto made =
+            estimator(set, {.method = method, .effort = Effort::Draft, .prior = standardPrior()});
         const Answer answer = made->answer(pairOf(30, 50, 70));
         EXPECT_NEAR((*answer.uSystematic)[Band::R] / answer.f[Band::R], 0.04, 0.005) << method;
     }

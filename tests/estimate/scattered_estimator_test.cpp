@@ -57,8 +57,9 @@ std::vector<Point> scattered(const Scatterer& truth, std::size_t count) {
     std::vector<Point> points;
     for (const double thetaI : {10.0, 30.0, 50.0}) {
         for (std::size_t i = 0; i < count / 3; ++i) {
-            const LightView pair{.in = Direction::fromSpherical(Radians::fromDegrees(thetaI), 0_deg),
-                                 .out = test::randomDirection(random)};
+            const LightView pair{
+                .in = Direction::fromSpherical(Radians::fromDegrees(thetaI), 0_deg),
+                .out = test::randomDirection(random)};
             points.push_back({pair, truth.answer(pair).f[Band::R]});
         }
     }
@@ -120,7 +121,8 @@ TEST(ScatteredEstimator, RefusesTooFewSamplesAndKeepsTwins) {
     EXPECT_FALSE((*made)->answer(pairOf(20, 0, 95, 0)).present());
 }
 
-/// NIST's sintered PTFE at 532 nm (see SOURCES.md there): 30 % of the directions left out, ten times.
+/// NIST's sintered PTFE at 532 nm (see SOURCES.md there): 30 % of the directions left out, ten
+/// times.
 TEST(ScatteredEstimator, PredictsNistsPtfe) {
     const auto file = test::dataFile("white_reference/PTFE.data.csv");
     if (!file) GTEST_SKIP();
@@ -156,8 +158,8 @@ TEST(ScatteredEstimator, PredictsNistsPtfe) {
     EXPECT_LT(sum / splits, 0.012);
 }
 
-/// One half of the plane of incidence of an RT-300S scan: f by signed theta_o, forward positive. The
-/// raw scans are not plane-symmetric and off by 10 to 45 % in reciprocity (SOURCES.md).
+/// One half of the plane of incidence of an RT-300S scan: f by signed theta_o, forward positive.
+/// The raw scans are not plane-symmetric and off by 10 to 45 % in reciprocity (SOURCES.md).
 using Scan = std::map<double, std::vector<std::pair<double, double>>>;
 
 std::map<std::array<double, 3>, double> readScan(const std::filesystem::path& file) {

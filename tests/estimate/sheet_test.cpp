@@ -25,8 +25,8 @@ TEST(Neighbours, TouchAndAreMutual) {
         for (const std::uint32_t near : neighboursOf(cell)) {
             const auto& back = neighboursOf(near);
             EXPECT_NE(std::find(back.begin(), back.end(), cell), back.end()) << cell << " " << near;
-            const Radians apart = angleBetween(
-                {.in = CellGrid::centre(cell), .out = CellGrid::centre(near)});
+            const Radians apart =
+                angleBetween({.in = CellGrid::centre(cell), .out = CellGrid::centre(near)});
             EXPECT_LT(apart.degrees(), 2.1);
         }
         EXPECT_GE(neighboursOf(cell).size(), 4U);
@@ -39,7 +39,8 @@ TEST(Sheet, KeepsAConstantBeyondItsEdgeAndCountsTheSteps) {
     const auto sheet = Sheet::over(constantTo(75, 3));
     ASSERT_TRUE(sheet);
     for (const double theta : {0.0, 30.0, 74.0, 80.0, 89.9}) {
-        const SheetValue at = sheet->at(Direction::fromSpherical(Radians::fromDegrees(theta), 1_deg));
+        const SheetValue at =
+            sheet->at(Direction::fromSpherical(Radians::fromDegrees(theta), 1_deg));
         EXPECT_NEAR(at.value, 3, 1e-12) << theta;
         EXPECT_NEAR(at.uSystematic, 0.2, 1e-12);
     }

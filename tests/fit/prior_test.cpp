@@ -34,9 +34,9 @@ Judged judge(const Scatterer& surface) {
 }
 
 LightView pairOf(double thetaI, double thetaO, double phiO) {
-    return {.in = Direction::fromSpherical(Radians::fromDegrees(thetaI), 0_deg),
-            .out = Direction::fromSpherical(Radians::fromDegrees(thetaO),
-                                            Radians::fromDegrees(phiO))};
+    return {
+        .in = Direction::fromSpherical(Radians::fromDegrees(thetaI), 0_deg),
+        .out = Direction::fromSpherical(Radians::fromDegrees(thetaO), Radians::fromDegrees(phiO))};
 }
 
 TEST(PriorLibrary, IsTheSameForASeedAndEverySpecIsAModel) {
@@ -72,7 +72,8 @@ TEST(PriorBasis, RefusesALibraryWithoutModels) {
 }
 
 TEST(PriorBasis, HasNoMoreFunctionsThanMaterialsThatDiffer) {
-    const PriorLibrary library{{"lambert,albedo=0.2", "lambert,albedo=0.2", "ggx,alpha=0.2,f0=0.5"}};
+    const PriorLibrary library{
+        {"lambert,albedo=0.2", "lambert,albedo=0.2", "ggx,alpha=0.2,f0=0.5"}};
     EXPECT_EQ(PriorBasis::over(library)->size(), 2U);
 }
 
@@ -83,8 +84,8 @@ TEST(Prior, FindsAMaterialOfItsKindBetweenAndBeyondTheAngles) {
     for (const LightView& pair :
          {pairOf(30, 30, 180), pairOf(10, 50, 60), pairOf(50, 20, 120), pairOf(70, 60, 170)}) {
         const double cosines = pair.in.z() * pair.out.z();
-        const auto value = judged.posterior.at(basis().at(pair),
-                                               basis().restVariance(proc::pairOf<double>(pair)));
+        const auto value =
+            judged.posterior.at(basis().at(pair), basis().restVariance(proc::pairOf<double>(pair)));
         const double y = std::log(truth->answer(pair).f[Band::R] * cosines + kPriorFloor);
         EXPECT_NEAR(value.y, y, 0.03);
         EXPECT_LT(std::abs(value.y - y), 4 * value.deviation);
@@ -112,8 +113,7 @@ TEST(PriorEvidence, OfNoValueIsThePriorItself) {
     for (FitRow& row : data.rows) row.f = {std::nan(""), 1, 1};
     const PriorEvidence evidence(basis(), data, basis().at(data), 0);
     EXPECT_TRUE(evidence.empty());
-    EXPECT_LT((evidence.posterior().mean() - basis().mean()).norm(),
-              1e-3 * basis().mean().norm());
+    EXPECT_LT((evidence.posterior().mean() - basis().mean()).norm(), 1e-3 * basis().mean().norm());
 }
 
 TEST(PriorEvidence, LeavesOutValuesThatAreMostlyNoise) {

@@ -66,8 +66,7 @@ TEST(EvalEstimator, AnswersBetweenAndBeyondAndSaysWhereFrom) {
         EXPECT_NEAR(std::stod(ours[i].first), f, 0.02 * f) << i;
     }
     EXPECT_EQ(ours[3].first, "");  // below the horizon
-    const auto plain =
-        evaluated(gonio, {"eval", table, "--points", points, "--estimator", "none"});
+    const auto plain = evaluated(gonio, {"eval", table, "--points", points, "--estimator", "none"});
     EXPECT_EQ(plain[2].first, "");  // 70 degrees was not measured
     const auto seed =
         evaluated(gonio, {"eval", table, "--points", points, "--estimator", "axis-linear"});
@@ -81,16 +80,15 @@ TEST(EvalEstimator, KrigesScatteredValues) {
     for (const int thetaI : {0, 30, 60}) {
         for (int thetaO = 5; thetaO < 80; thetaO += 12) {
             for (int phi = 0; phi < 360; phi += 45) {
-                csv << thetaI << ",0," << thetaO << "," << phi << "," << 0.1 + 1e-3 * thetaI << "\n";
+                csv << thetaI << ",0," << thetaO << "," << phi << "," << 0.1 + 1e-3 * thetaI
+                    << "\n";
             }
         }
     }
     test::writeText(gonio / "scattered.csv", csv.str());
-    const auto rows = evaluated(gonio,
-                                {"eval",
-                                 (gonio / "scattered.csv").string(),
-                                 "--points",
-                                 pointsFile(gonio).string()});
+    const auto rows = evaluated(
+        gonio,
+        {"eval", (gonio / "scattered.csv").string(), "--points", pointsFile(gonio).string()});
     ASSERT_EQ(rows.size(), 4U);
     EXPECT_NEAR(std::stod(rows[1].first), 0.13, 0.02);
     EXPECT_TRUE(rows[1].second == "interpolated" || rows[1].second == "model") << rows[1].second;
@@ -106,8 +104,8 @@ TEST(EvalEstimator, RefusesWhatCannotBe) {
     const Ran formula = gonio({"eval", kSurface, "--points", points, "--estimator", "prior"});
     EXPECT_EQ(formula.exitCode, 2);
     test::writeText(gonio / "library.txt", "banana\n");
-    const Ran library = gonio(
-        {"eval", table, "--points", points, "--prior", (gonio / "library.txt").string()});
+    const Ran library =
+        gonio({"eval", table, "--points", points, "--prior", (gonio / "library.txt").string()});
     EXPECT_EQ(library.exitCode, 6);
     EXPECT_NE(library.err.find("line 1"), std::string::npos) << library.err;
     test::writeText(gonio / "few.csv", "theta_i,phi_i,theta_o,phi_o,f\n0,0,10,0,0.1\n");
@@ -117,18 +115,16 @@ TEST(EvalEstimator, RefusesWhatCannotBe) {
 
 TEST(Compare, TellsWhetherSurfacesAgree) {
     const Program gonio;
-    const Ran ran = gonio({"--json", "compare", "model:lambert,albedo=0.33", "model:lambert,albedo=0.3"});
+    const Ran ran =
+        gonio({"--json", "compare", "model:lambert,albedo=0.33", "model:lambert,albedo=0.3"});
     ASSERT_EQ(ran.exitCode, 0) << ran.err;
     const Json json = Json::parse(ran.out);
     EXPECT_EQ(test::complaintsOf(json), "");
     EXPECT_EQ(json["agreement"], "unknown");
     EXPECT_NEAR(json["rows"][0]["relative_rms"].get<double>(), 0.1, 1e-9);
     EXPECT_EQ(json["rows"].size(), 4U * 4 * 3);
-    const Ran shown = gonio({"compare",
-                             tableFile(gonio).string(),
-                             kSurface,
-                             "--incidences",
-                             "30,50"});
+    const Ran shown =
+        gonio({"compare", tableFile(gonio).string(), kSurface, "--incidences", "30,50"});
     EXPECT_EQ(shown.exitCode, 0) << shown.err;
     EXPECT_NE(shown.out.find("cannot be said"), std::string::npos) << shown.out;
     const Ran bad = gonio({"compare", kSurface, kSurface, "--incidences", "30,x"});
