@@ -1,6 +1,7 @@
 #include "daemon/estimators.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "proc/estimate/grid_data.h"
 #include "proc/estimate/method_choice.h"
@@ -17,13 +18,18 @@ using Opened = std::shared_ptr<const Scatterer>;
 /// Relative noise of a table that says nothing of its own.
 constexpr double kAssumed = 0.01;
 
-Result<std::shared_ptr<const proc::PriorBasis>> priorOf(const EstimatorChoice& choice) {
-    if (choice.prior.empty()) return proc::standardPrior();
+using Prior = std::function<std::shared_ptr<const proc::PriorBasis>()>;
+
+/// The standard one is made when it is asked for; a library of one's own is read now.
+Result<Prior> priorOf(const EstimatorChoice& choice) {
+    if (choice.prior.empty()) return Prior(proc::standardPrior);
     const auto library = proc::PriorLibrary::read(choice.prior);
     if (!library) return library.error();
     auto basis = proc::PriorBasis::over(*library);
     if (!basis) return basis.error();
-    return std::make_shared<const proc::PriorBasis>(std::move(*basis));  // of one run
+    return Prior([made = std::make_shared<const proc::PriorBasis>(std::move(*basis))] {
+        return made;  // of one run
+    });
 }
 
 Result<Opened> ofTheThesis(proc::SeedInterpolator interpolator,

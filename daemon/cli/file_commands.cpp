@@ -105,6 +105,8 @@ Result<void> eval(const CommonOptions& common, const EvalOptions& options) {
     if (!effort) return effort.error().in("eval");
     const Result<proc::Precision> precision = proc::parsePrecision(options.precision);
     if (!precision) return precision.error().in("eval");
+    const Result<proc::Points> points = proc::readPoints(options.points);
+    if (!points) return points.error();
     const Result<Estimated> opened =
         openEstimated(options.file,
                       common.store,
@@ -115,8 +117,6 @@ Result<void> eval(const CommonOptions& common, const EvalOptions& options) {
         return Error{ErrorKind::Usage,
                      "eval: '" + options.file + "': --precision float is for model:SPEC alone"};
     }
-    const Result<proc::Points> points = proc::readPoints(options.points);
-    if (!points) return points.error();
     const std::vector<Answer> answers = answersAt(*opened->scatterer, points->pairs);
     const std::string csv = proc::evalCsv(*points, answers, opened->scatterer->bandCount());
     if (!options.output.empty()) return proc::writeFile(options.output, csv);

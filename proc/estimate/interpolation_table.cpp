@@ -80,7 +80,7 @@ Method make(const std::string& name, const SampleSet& set) {
                        .curve = IncidenceCurve::CatmullRom}),
                 ""};
     }
-    auto made = SampleEstimator::over(set, {.method = name, .prior = standardPrior()});
+    auto made = SampleEstimator::over(set, {.method = name, .prior = standardPrior});
     if (!made) return {};
     const MethodChoice& choice = (*made)->choice();
     const std::string chosen =

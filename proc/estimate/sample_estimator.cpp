@@ -153,7 +153,7 @@ void SampleEstimator::choose() const {
     const std::vector<bool> all(data_.incidences.size(), true);
     const bool draft = options_.effort == Effort::Draft;
     if (options_.prior && (!draft || options_.method == "prior")) {
-        samplePrior_ = std::make_unique<const SamplePrior>(options_.prior, data_);
+        samplePrior_ = std::make_unique<const SamplePrior>(options_.prior(), data_);
     }
     MethodChoiceOptions how;
     how.learn = !draft;

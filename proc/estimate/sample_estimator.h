@@ -17,6 +17,7 @@
 // method's own error, learned from what it predicted wrong when parts of the sample were left out,
 // or a posterior's deviation. Both are of k = 1.
 
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -36,8 +37,8 @@ struct SampleEstimatorOptions {
     std::string method = "auto";
     /// Draft: the carrier of least chi-square without asking the sample, and no prior.
     Effort effort = Effort::Standard;
-    /// Shared by all estimators of a run; null: no prior.
-    std::shared_ptr<const PriorBasis> prior;
+    /// Asked when the choice is made; the basis is shared by all estimators of a run. Empty: none.
+    std::function<std::shared_ptr<const PriorBasis>()> prior;
 };
 
 class SampleEstimator final : public Scatterer {
