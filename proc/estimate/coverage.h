@@ -26,7 +26,6 @@ public:
 
     /// The pair above the horizon, its light at phi = 0.
     [[nodiscard]] Reach at(const LightView& pair) const;
-    [[nodiscard]] const std::vector<double>& incidencesDeg() const { return deg_; }
 
 private:
     std::vector<double> deg_;

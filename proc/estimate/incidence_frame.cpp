@@ -43,6 +43,13 @@ LightView withLightAtZero(const LightView& pair) {
             .out = pair.out.turned(turn)};
 }
 
+LightView viewOf(const Pair<double>& pair) {
+    const auto direction = [](const Vec<double>& v) {
+        return Direction::fromVector({v.x, v.y, v.z}).value_or(Direction());
+    };
+    return {.in = direction(pair.in), .out = direction(pair.out)};
+}
+
 Direction onSheet(IncidenceFrame frame, const LightView& pair, Radians sheet) {
     const Direction wi = Direction::fromSpherical(sheet, Radians(0));
     switch (frame) {

@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "proc/core/direction.h"
+#include "proc/models/kernel.h"
 
 namespace gonio::proc {
 
@@ -24,6 +25,9 @@ enum class IncidenceFrame {
 
 /// The pair turned about the normal so that the light stands at phi = 0; at the normal as it is.
 [[nodiscard]] LightView withLightAtZero(const LightView& pair);
+
+/// The directions of a pair of components.
+[[nodiscard]] LightView viewOf(const Pair<double>& pair);
 
 /// wo at incidence `sheet` that corresponds to pair.out; pair.in at phi = 0.
 [[nodiscard]] Direction onSheet(IncidenceFrame frame, const LightView& pair, Radians sheet);

@@ -18,7 +18,7 @@ using Made = std::shared_ptr<const Scatterer>;
 /// A method as it is, without reciprocity: a baseline.
 class Plain final : public Scatterer {
 public:
-    explicit Plain(std::unique_ptr<const IncidenceMethod> method) : method_(std::move(method)) {}
+    explicit Plain(std::shared_ptr<const IncidenceMethod> method) : method_(std::move(method)) {}
     [[nodiscard]] Answer answer(const LightView& pair) const override {
         Answer answer;
         answer.f = method_->at(withLightAtZero(pair)).f;
@@ -27,13 +27,20 @@ public:
     }
 
 private:
-    std::unique_ptr<const IncidenceMethod> method_;
+    std::shared_ptr<const IncidenceMethod> method_;  ///< as methodNamed() gives it
 };
 
-Made plain(const SampleSet& set, SheetMethodOptions options) {
+/// One that needs neither a carrier nor a prior; null for the others.
+Made plain(const SampleSet& set, const std::string& name) {
     const BrdfData data = fitDataOf(set);
-    const std::vector<bool> all(data.incidences.size(), true);
-    return std::make_shared<const Plain>(sheetMethod(data, all, std::move(options)));
+    if (name == "same-direction") {
+        return std::make_shared<const Plain>(
+            sheetMethod(data,
+                        std::vector<bool>(data.incidences.size(), true),
+                        {.name = name, .frame = IncidenceFrame::SameDirection}));
+    }
+    auto method = methodNamed(name, data, {}, nullptr);
+    return method ? std::make_shared<const Plain>(std::move(*method)) : nullptr;
 }
 
 Made ofTheThesis(const SampleSet& set, SeedInterpolator interpolator) {
@@ -52,34 +59,7 @@ struct Method {
 
 Method make(const std::string& name, const SampleSet& set) {
     if (const auto seed = seedInterpolatorNamed(name)) return {ofTheThesis(set, *seed), ""};
-    if (name == "same-direction") {
-        return {plain(set, {.name = name, .frame = IncidenceFrame::SameDirection}), ""};
-    }
-    if (name == "specular-linear") return {plain(set, {.name = name}), ""};
-    if (name == "specular-log") {
-        return {plain(set, {.name = name, .quantity = SheetQuantity::LogF}), ""};
-    }
-    if (name == "direction-cosine") {
-        return {plain(set,
-                      {.name = name,
-                       .frame = IncidenceFrame::DirectionCosine,
-                       .quantity = SheetQuantity::LogF}),
-                ""};
-    }
-    if (name == "half-vector") {
-        return {plain(set,
-                      {.name = name,
-                       .frame = IncidenceFrame::HalfVector,
-                       .quantity = SheetQuantity::LogFCosines}),
-                ""};
-    }
-    if (name == "catmull-rom") {
-        return {plain(set,
-                      {.name = name,
-                       .quantity = SheetQuantity::LogF,
-                       .curve = IncidenceCurve::CatmullRom}),
-                ""};
-    }
+    if (Made baseline = plain(set, name)) return {std::move(baseline), ""};
     auto made = SampleEstimator::over(set, {.method = name, .prior = standardPrior});
     if (!made) return {};
     const MethodChoice& choice = (*made)->choice();

@@ -15,7 +15,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Index = Eigen::Index;
-using Place = ScatteredEstimator::Place;
+using Place = Eigen::Vector3d;
 using Process = ScatteredEstimator::Process;
 
 /// Of the median |f|, added to f and the model before their ratio is taken: what is far darker is
@@ -151,15 +151,10 @@ private:
     double most_ = -std::numeric_limits<double>::infinity();
 };
 
-Direction directionOf(const Vec<double>& v) {
-    return Direction::fromVector({v.x, v.y, v.z}).value_or(Direction());
-}
-
 std::vector<LightView> pairsOf(const BrdfData& data) {
     std::vector<LightView> pairs;
     for (const FitRow& row : data.rows) {
-        const Pair<double>& at = data.nodesOf(row).front().pair;
-        pairs.push_back({.in = directionOf(at.in), .out = directionOf(at.out)});
+        pairs.push_back(viewOf(data.nodesOf(row).front().pair));
     }
     return pairs;
 }

@@ -71,8 +71,6 @@ public:
     };
     [[nodiscard]] const Process& process(Band band) const { return bandsOf_[index(band)].process; }
 
-    using Place = Eigen::Vector3d;
-
 private:
     struct OneBand {
         std::vector<KrigingSample> samples;

@@ -38,8 +38,6 @@ public:
 
     /// wo above the horizon.
     [[nodiscard]] SheetValue at(const Direction& wo) const;
-    /// Layers between the cell and the nearest one that was measured.
-    [[nodiscard]] int steps(std::size_t cell) const { return steps_[cell]; }
 
 private:
     explicit Sheet(Cells cells);

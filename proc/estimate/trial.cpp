@@ -11,16 +11,8 @@
 namespace gonio::proc {
 namespace {
 
-Direction directionOf(const Vec<double>& v) {
-    return Direction::fromVector({v.x, v.y, v.z}).value_or(Direction());
-}
-
-LightView viewOf(const WeightedNode& node) {
-    return {.in = directionOf(node.pair.in), .out = directionOf(node.pair.out)};
-}
-
 Radians fromMirror(const BrdfData& data, const FitRow& row) {
-    const LightView pair = viewOf(data.nodesOf(row).front());
+    const LightView pair = viewOf(data.nodesOf(row).front().pair);
     return angleBetween({.in = mirrorOf(pair.in), .out = pair.out});
 }
 
@@ -35,7 +27,7 @@ RowAnswer rowAnswer(const IncidenceMethod& method,
                     std::span<const WeightedNode> nodes) {
     RowAnswer mean;
     for (const WeightedNode& node : nodes) {
-        const ReciprocalAnswer one = reciprocalAnswer(method, coverage, viewOf(node));
+        const ReciprocalAnswer one = reciprocalAnswer(method, coverage, viewOf(node.pair));
         mean.f = mean.f + one.value.f * node.weight;
         mean.reach.between += node.weight * one.reach.between;
         mean.reach.steps += node.weight * one.reach.steps;
