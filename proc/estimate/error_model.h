@@ -1,6 +1,10 @@
 #pragma once
-// How wrong a method may be, learned from what was left out of a sample: errors relative to f, in
-// proportion to how far an answer reaches beyond what was measured.
+// How wrong a method may be, learned from what was left out of a sample: errors relative to the
+// answer (error_scale.h), in proportion to how far it reaches beyond what was measured.
+//
+// Of errors that are not Gaussian, as those at a surface's dark edges are, no root of a mean square
+// tells what to expect: the standard error is the one whose 1 and 2 standard deviations hold 68.3
+// and 95.4 % of them, noise taken off.
 
 #include <array>
 #include <vector>
@@ -11,14 +15,20 @@ namespace gonio::proc {
 
 /// One value that was predicted from the others.
 struct ProbeError {
-    double squared = 0;  ///< relative to f, less what its noise makes; may be negative
+    double off = 0;       ///< 1/sr, from f
+    double u = 0;         ///< 1/sr, of f
+    double toBoth = 1;    ///< 1/sr, what it is relative to when methods are compared
+    double toAnswer = 1;  ///< 1/sr, when the answer is all that is known
     Reach reach;
     Radians fromMirror;  ///< between wo and the mirror direction
     bool even = true;    ///< of an even choice over the hemisphere; else one more of the lobe
     bool lobe = false;   ///< f is above a tenth of the incidence's largest
+
+    /// Relative, less what noise makes; may be negative. At most 2 however dark f is.
+    [[nodiscard]] double squared() const { return (off * off - u * u) / (toBoth * toBoth); }
 };
 
-/// Standard relative errors.
+/// Standard errors relative to an answer (error_scale.h).
 class ErrorModel {
 public:
     /// What cells of a degree resolve, whatever the method.

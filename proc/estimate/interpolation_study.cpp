@@ -77,7 +77,7 @@ struct Tally {
     void add(const Answer& answer, const LedBands& truth, const LedBands& peak, double weight) {
         constexpr double kDarkest = 1e-5;  // 1/sr: darker is beyond what a rig measures
         for (const Band band : kBands) {
-            if (truth[band] < kDarkest) continue;
+            if (!(truth[band] >= kDarkest)) continue;  // or the truth does not say
             ++count;
             const double f = answer.f[band];
             if (std::isnan(f)) {

@@ -27,7 +27,7 @@ struct SyntheticOptions {
                                         const SyntheticOptions& options = {});
 
 /// Relative error of f, root mean square over directions weighted by solid angle; directions darker
-/// than 1e-5 / sr do not count.
+/// than 1e-5 / sr, or of which the truth says nothing, do not count.
 struct RegionError {
     double hemisphere = 0;  ///< all directions asked
     double lobe = 0;        ///< where the truth is above a tenth of its largest value there

@@ -83,7 +83,8 @@ const std::vector<Candidate>& candidates() {
 /// Everything that is left out in turn, with the carriers of what is left.
 class Trials {
 public:
-    Trials(const BrdfData& data, const Carriers& all, const MethodChoiceOptions& options) {
+    Trials(const BrdfData& data, const Carriers& all, const MethodChoiceOptions& options)
+        : scale_(data) {
         const std::size_t n = data.incidences.size();
         if (n < 3 || !options.learn) return;
         for (std::size_t g = 1; g + 1 < n; ++g) {
@@ -102,10 +103,10 @@ public:
     [[nodiscard]] Errors errorsOf(const Candidate& candidate, const SamplePrior* prior) const {
         Errors errors;
         errors.made = !between_.empty();
-        addErrors(errors.between, between_, candidate, prior, errors);
-        if (errors.made) addErrors(errors.last, last_, candidate, prior, errors);
+        addErrors(errors.between, between_, candidate, prior, scale_, errors);
+        if (errors.made) addErrors(errors.last, last_, candidate, prior, scale_, errors);
         bool made = errors.made;
-        if (errors.made) addErrors(errors.edge, edge_, candidate, prior, errors);
+        if (errors.made) addErrors(errors.edge, edge_, candidate, prior, scale_, errors);
         errors.made = made;  // a prior cannot be asked at the edge
         return errors;
     }
@@ -131,6 +132,7 @@ private:
                           const std::vector<One>& trials,
                           const Candidate& candidate,
                           const SamplePrior* prior,
+                          const ErrorScale& scale,
                           Errors& errors) {
         for (const One& one : trials) {
             const Method method = candidate.make({.data = one.trial.seen(),
@@ -142,11 +144,12 @@ private:
             errors.made = errors.made && method != nullptr;
             if (!method) return;
             errors.anchored = method->anchored();
-            const std::vector<ProbeError> own = one.trial.errorsOf(*method);
+            const std::vector<ProbeError> own = one.trial.errorsOf(*method, scale);
             to.insert(to.end(), own.begin(), own.end());
         }
     }
 
+    ErrorScale scale_;
     std::vector<One> between_, last_, edge_;
 };
 
@@ -156,7 +159,7 @@ double rootOf(const std::vector<ProbeError>& errors, const Wanted& wanted) {
     double count = 0;
     for (const ProbeError& error : errors) {
         if (!wanted(error)) continue;
-        sum += error.squared;
+        sum += error.squared();
         ++count;
     }
     return count > 0 ? std::sqrt(std::max(0.0, sum) / count) : 0;
@@ -230,6 +233,7 @@ MethodChoice chooseMethod(const BrdfData& data,
                           const MethodChoiceOptions& options) {
     const std::vector<bool> all(data.incidences.size(), true);
     MethodChoice choice;
+    choice.scale = ErrorScale(data);
     MethodChoiceOptions how = options;
     how.fit.families = familiesOf(options);
     if (!how.fit.families.empty()) choice.carriers = fitCarriers(data, all, how.fit);

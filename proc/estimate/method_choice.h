@@ -27,7 +27,9 @@
 
 namespace gonio::proc {
 
-/// Relative errors, root mean square less the noise.
+/// Relative errors (error_scale.h), root mean square less the noise. Each is relative to what was
+/// measured and to the answer alike, so that no value counts for more than an error of 141 %: a
+/// dark cell cannot outweigh a lobe.
 struct MethodScore {
     std::string name;
     double hemisphere = 0;         ///< at incidences that were left out
@@ -47,6 +49,7 @@ struct MethodChoice {
     ChosenMethod beyond;
     std::vector<MethodScore> scores;  ///< of all candidates, by between()
     Carriers carriers;                ///< fitted to all incidences
+    ErrorScale scale;                 ///< what errors are relative to
 };
 
 struct MethodChoiceOptions {

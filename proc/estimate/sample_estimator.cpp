@@ -81,7 +81,10 @@ struct Part {
     double off = 0;
 };
 
-Part partOf(const ChosenMethod& chosen, const Coverage& coverage, const LightView& pair) {
+Part partOf(const ChosenMethod& chosen,
+            const ErrorScale& scale,
+            const Coverage& coverage,
+            const LightView& pair) {
     const IncidenceMethod& method = *chosen.method;
     const ReciprocalAnswer got = reciprocalAnswer(method, coverage, pair);
     Part part{got.value.f, got.value.uRandom, got.value.uSystematic, got.exchanged, got.off};
@@ -89,7 +92,7 @@ Part partOf(const ChosenMethod& chosen, const Coverage& coverage, const LightVie
     const double relative =
         method.ownError() || !chosen.errorsKnown ? 0 : chosen.errors.at(got.reach, away);
     for (const Band band : kBands) {
-        double own = relative * std::abs(part.f[band]);
+        double own = relative * scale.of(part.f[band], static_cast<std::size_t>(band));
         // What a function of all data is wrong by, it is wrong by everywhere alike.
         if (!method.anchored()) own = std::hypot(own, std::exchange(part.uRandom[band], 0.0));
         part.uSystematic[band] = std::hypot(part.uSystematic[band], own);
@@ -184,7 +187,7 @@ Answer SampleEstimator::answer(const LightView& pair) const {
 
 Answer SampleEstimator::estimate(const LightView& pair) const {
     const MethodChoice& chosen = choice();
-    const Part inside = partOf(chosen.between, coverage_, pair);
+    const Part inside = partOf(chosen.between, chosen.scale, coverage_, pair);
     Answer answer;
     answer.flags = corrections_;
     answer.f = inside.f;
@@ -193,7 +196,7 @@ Answer SampleEstimator::estimate(const LightView& pair) const {
     const double share = smooth(std::min(1.0, inside.off));
     if (share < 0.5) labelBetween(answer, kindOf(*chosen.between.method), inside.exchanged);
     if (share > 0) {
-        const Part outside = partOf(chosen.beyond, coverage_, pair);
+        const Part outside = partOf(chosen.beyond, chosen.scale, coverage_, pair);
         for (const Band band : kBands) {
             const auto blend = [&](double& to, double other) {
                 to = (1 - share) * to + share * other;

@@ -37,13 +37,19 @@ RowAnswer rowAnswer(const IncidenceMethod& method,
     return mean;
 }
 
-/// Relative to f, less its noise; NaN where there is no value.
-double squaredError(const BrdfData& data, const FitRow& row, std::size_t band, double answer) {
-    constexpr double kFloor = 1e-5;  // 1/sr: what the rig cannot tell from nothing
-    const double f = row.f[band];
-    const double u = data.uKnown ? data.uOf(row, band) : 0;
-    const double off = answer - f;
-    return (off * off - u * u) / (f * f + kFloor * kFloor);
+/// `off` is NaN where there is no value.
+ProbeError errorOf(const BrdfData& data,
+                   const FitRow& row,
+                   std::size_t band,
+                   double answer,
+                   const ErrorScale& scale) {
+    ProbeError error;
+    error.off = answer - row.f[band];
+    error.u = data.uKnown ? data.uOf(row, band) : 0;
+    error.toAnswer = scale.of(answer, band);
+    error.toBoth = std::hypot(
+        std::hypot(error.toAnswer, scale.of(row.f[band], band)) / std::sqrt(2.0), error.u);
+    return error;
 }
 
 BrdfData upTo(const BrdfData& data, double leastCosine) {
@@ -112,7 +118,8 @@ void Trial::addProbes(std::size_t group, double mostCosine, const TrialOptions& 
     for (std::size_t k = 0; k < near; ++k) probes_.push_back({others[k].second, false});
 }
 
-std::vector<ProbeError> Trial::errorsOf(const IncidenceMethod& method) const {
+std::vector<ProbeError> Trial::errorsOf(const IncidenceMethod& method,
+                                        const ErrorScale& scale) const {
     std::vector<RowAnswer> answers(probes_.size());
     parallelFor(probes_.size(), [&](IndexRange range) {
         for (std::size_t i = range.begin; i < range.end; ++i) {
@@ -131,13 +138,13 @@ std::vector<ProbeError> Trial::errorsOf(const IncidenceMethod& method) const {
         const FitRow& row = data_->rows[probes_[i].row];
         const Radians away = fromMirror(*data_, row);
         for (std::size_t b = 0; b < data_->bandsUsed(); ++b) {
-            const double squared = squaredError(*data_, row, b, answers[i].f.value[b]);
-            if (std::isnan(squared)) continue;
-            errors.push_back({.squared = squared,
-                              .reach = answers[i].reach,
-                              .fromMirror = away,
-                              .even = probes_[i].even,
-                              .lobe = row.f[b] > 0.1 * peaks[row.group][b]});
+            ProbeError error = errorOf(*data_, row, b, answers[i].f.value[b], scale);
+            if (std::isnan(error.off)) continue;
+            error.reach = answers[i].reach;
+            error.fromMirror = away;
+            error.even = probes_[i].even;
+            error.lobe = row.f[b] > 0.1 * peaks[row.group][b];
+            errors.push_back(error);
         }
     }
     return errors;

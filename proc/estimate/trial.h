@@ -6,6 +6,7 @@
 
 #include "proc/estimate/coverage.h"
 #include "proc/estimate/error_model.h"
+#include "proc/estimate/error_scale.h"
 #include "proc/estimate/incidence_method.h"
 #include "proc/fit/brdf_data.h"
 
@@ -38,9 +39,10 @@ public:
     [[nodiscard]] const std::vector<bool>& groups() const { return groups_; }
     [[nodiscard]] std::optional<std::size_t> without() const { return without_; }
 
-    /// Of a method made from what it may see, one per value. Answers are means over a row's nodes,
-    /// asked both ways (reciprocal_method.h).
-    [[nodiscard]] std::vector<ProbeError> errorsOf(const IncidenceMethod& method) const;
+    /// Of a method made from what it may see, one per value, relative to `scale` of all the data.
+    /// Answers are means over a row's nodes, asked both ways (reciprocal_method.h).
+    [[nodiscard]] std::vector<ProbeError> errorsOf(const IncidenceMethod& method,
+                                                   const ErrorScale& scale) const;
 
 private:
     Trial(const BrdfData& data, std::optional<BrdfData> inner, std::vector<bool> groups);

@@ -8,9 +8,7 @@ namespace gonio::proc {
 namespace {
 
 ProbeError error(double relative, Reach reach, double mirrorDeg) {
-    return {.squared = relative * relative,
-            .reach = reach,
-            .fromMirror = Radians::fromDegrees(mirrorDeg)};
+    return {.off = relative, .reach = reach, .fromMirror = Radians::fromDegrees(mirrorDeg)};
 }
 
 TEST(ErrorModel, GrowsWithTheReachOfAnAnchoredMethod) {
@@ -35,9 +33,18 @@ TEST(ErrorModel, GrowsBeyondTheIncidencesAndTheEdge) {
 }
 
 TEST(ErrorModel, TakesErrorsBelowTheNoiseForNone) {
-    ProbeError below = error(0, {.between = 1}, 3);
-    below.squared = -1e-4;
+    ProbeError below = error(0.01, {.between = 1}, 3);
+    below.u = 0.02;
     EXPECT_NEAR(ErrorModel(true, {below}).at({.between = 1}, 3_deg), ErrorModel::kLeast, 1e-12);
+}
+
+TEST(ErrorModel, IsNotRuledByAFewThatAreFarOff) {
+    std::vector<ProbeError> errors(1000, error(0.02, {.between = 1}, 3));
+    for (std::size_t i = 0; i < 30; ++i) errors[i * 7].off = 50;
+    EXPECT_NEAR(ErrorModel(true, errors).at({.between = 1}, 3_deg), 0.02, 1e-4);
+    // One in ten is no accident: two standard deviations hold it.
+    for (std::size_t i = 0; i < 70; ++i) errors[i * 7 + 300].off = 50;
+    EXPECT_NEAR(ErrorModel(true, errors).at({.between = 1}, 3_deg), 25, 1e-4);
 }
 
 TEST(ErrorModel, OfNothingIsTheLeast) {
