@@ -4,6 +4,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "daemon/cli/albedo_rows.h"
 #include "daemon/cli/commands.h"
 #include "daemon/cli/incidence_list.h"
 #include "daemon/cli/output.h"
@@ -16,12 +17,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// One incidence, or the mean of them all.
-struct AlbedoRow {
-    std::optional<Radians> incidence;
-    proc::Albedo albedo;
-};
-
 /// What the cells of the sample hold, without anything in between or beyond.
 std::vector<AlbedoRow> ofCells(const proc::SampleSet& sample) {
     std::vector<AlbedoRow> rows;
@@ -29,22 +24,6 @@ std::vector<AlbedoRow> ofCells(const proc::SampleSet& sample) {
         rows.push_back({led.incidence, proc::directionalAlbedo(led)});
     }
     rows.push_back({std::nullopt, proc::meanAlbedo(sample)});
-    return rows;
-}
-
-std::vector<AlbedoRow> ofHemisphere(const Scatterer& surface,
-                                    const std::vector<Radians>& incidences) {
-    // An estimator takes microseconds for an answer: its albedo is worth a thousandth.
-    const proc::AlbedoOptions options{.tolerance = 1e-4, .mostEvaluations = 20000};
-    std::vector<AlbedoRow> rows;
-    for (const Radians incidence : incidences) {
-        const Direction wi = Direction::fromSpherical(incidence, Radians(0));
-        rows.push_back({incidence, proc::directionalAlbedo(surface, wi, options)});
-    }
-    rows.push_back(
-        {std::nullopt,
-         proc::meanAlbedo(surface,
-                          {.directional = options, .tolerance = 1e-3, .mostIncidences = 15})});
     return rows;
 }
 
@@ -70,22 +49,6 @@ std::vector<std::vector<std::string>> tableOf(const std::vector<AlbedoRow>& rows
     return table;
 }
 
-Json toJson(const AlbedoRow& row) {
-    const auto number = [](const std::optional<double>& v) {
-        return v && std::isfinite(*v) ? Json(*v) : Json(nullptr);
-    };
-    Json json{{"incidence_deg", row.incidence ? Json(row.incidence->degrees()) : Json(nullptr)}};
-    for (const Band band : kBands) {
-        const proc::BandAlbedo& one = row.albedo[band];
-        json["bands"][std::string(letter(band))] = {{"albedo", number(one.value)},
-                                                    {"u_random", number(one.uRandom)},
-                                                    {"u_systematic", number(one.uSystematic)},
-                                                    {"error_bound", number(one.errorBound)},
-                                                    {"missing", one.missing}};
-    }
-    return json;
-}
-
 }  // namespace
 
 Result<void> albedo(const CommonOptions& common, const AlbedoOptions& options) {
@@ -102,10 +65,10 @@ Result<void> albedo(const CommonOptions& common, const AlbedoOptions& options) {
     const auto incidences = options.incidences.empty() ? Result(opened->material.incidences())
                                                        : incidenceList(options.incidences);
     if (!incidences) return incidences.error().in("albedo");
-    const auto rows = cells ? ofCells(*sample) : ofHemisphere(*opened->scatterer, *incidences);
+    const auto rows = cells ? ofCells(*sample) : albedoRows(*opened->scatterer, *incidences);
     if (common.json) {
         Json all = Json::array();
-        for (const AlbedoRow& row : rows) all.push_back(toJson(row));
+        for (const AlbedoRow& row : rows) all.push_back(albedoJson(row));
         printJson({{"schema", "gonio/albedo/1"},
                    {"file", options.file},
                    {"estimator", options.estimator},

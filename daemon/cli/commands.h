@@ -101,7 +101,11 @@ Result<void> watch(const CommonOptions& common, const WatchOptions& options);
 
 Result<void> doctor(const CommonOptions& common);
 
-Result<void> info(const CommonOptions& common, const std::string& file);
+struct InfoOptions {
+    std::string file;
+    std::string estimator = "none";  ///< else what it makes of the file, too
+};
+Result<void> info(const CommonOptions& common, const InfoOptions& options);
 
 struct EvalOptions {
     std::string file;

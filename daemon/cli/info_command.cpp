@@ -6,8 +6,9 @@
 
 #include "daemon/budget_table.h"
 #include "daemon/cli/commands.h"
+#include "daemon/cli/estimator_facts.h"
 #include "daemon/cli/output.h"
-#include "daemon/material.h"
+#include "daemon/estimators.h"
 #include "proc/formats/file_degrees.h"
 #include "proc/formats/graw_exr.h"
 #include "proc/optics/cell_grid.h"
@@ -150,33 +151,53 @@ Json rawJson(const proc::RawCapture& capture) {
     return json;
 }
 
-Result<Json> infoOf(const CommonOptions& common, const std::string& file) {
+Result<Estimated> asItIs(Result<Material> material) {
+    if (!material) return material.error();
+    std::shared_ptr<const Scatterer> scatterer = material->scatterer;
+    return Estimated{std::move(scatterer), std::move(*material)};
+}
+
+Result<Json> infoOf(const CommonOptions& common, const InfoOptions& options) {
+    const std::string& file = options.file;
     if (std::filesystem::path(file).extension() == ".graw") {
+        if (options.estimator != "none") {
+            return Error{ErrorKind::Usage,
+                         "info: '" + file + "' is a raw capture: it has no --estimator"};
+        }
         const Result<proc::RawCapture> capture = proc::readGraw(file);
         if (!capture) return capture.error();
         return rawJson(*capture);
     }
-    const Result<Material> material = openMaterial(file, common.store);
-    if (!material) return material.error();
-    Json json = {{"kind", material->kind}};
-    json["incidences_deg"] = degreesOf(material->incidences());
-    json["bands"] = material->scatterer->bandCount() == BandCount::One ? 1 : 3;
-    if (material->sample != nullptr) json.update(sampleJson(*material->sample));
-    if (material->table != nullptr) json.update(tableJson(*material->table));
+    const bool estimates = options.estimator != "none";
+    if (estimates && std::filesystem::path(file).extension() == ".csv") {
+        return Error{ErrorKind::Usage,
+                     "info: '" + file + "': --estimator is for .gonio, .bsdf and sample:NAME"};
+    }
+    const Result<Estimated> opened =
+        estimates ? openEstimated(file, common.store, {.name = options.estimator})
+                  : asItIs(openMaterial(file, common.store));
+    if (!opened) return opened.error();
+    const Material& material = opened->material;
+    Json json = {{"kind", material.kind}};
+    json["incidences_deg"] = degreesOf(material.incidences());
+    json["bands"] = material.scatterer->bandCount() == BandCount::One ? 1 : 3;
+    if (material.sample != nullptr) json.update(sampleJson(*material.sample));
+    if (material.table != nullptr) json.update(tableJson(*material.table));
+    if (estimates) json["estimator"] = estimatorFacts(*opened, options.estimator);
     return json;
 }
 
 }  // namespace
 
-Result<void> info(const CommonOptions& common, const std::string& file) {
-    const Result<Json> facts = infoOf(common, file);
+Result<void> info(const CommonOptions& common, const InfoOptions& options) {
+    const Result<Json> facts = infoOf(common, options);
     if (!facts) return facts.error();
     if (common.json) {
-        Json json = {{"schema", "gonio/info/1"}, {"file", file}};
+        Json json = {{"schema", "gonio/info/1"}, {"file", options.file}};
         json.update(*facts);
         printJson(json);
     } else {
-        std::cout << "file: " << file << "\n";
+        std::cout << "file: " << options.file << "\n";
         Json plain = withReadableVerdicts(*facts);
         const std::string budget = budgetTable(plain.value("budget", Json::array()));
         if (!budget.empty()) plain.erase("budget");

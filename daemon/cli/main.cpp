@@ -35,7 +35,7 @@ struct Program {
     SessionOptions session;
     WatchOptions watch;
     GoalOptions goal;
-    std::string infoFile;
+    InfoOptions info;
     EvalOptions eval;
     AlbedoOptions albedo;
     CompareOptions compare;
@@ -255,9 +255,12 @@ void Program::addSession() {
 }
 
 void Program::addFiles() {
-    CLI::App* sub =
-        command(app, "info", "print what a file holds", [this] { return info(common, infoFile); });
-    sub->add_option("file", infoFile, "a file, sample:NAME or model:SPEC")->required();
+    CLI::App* sub = command(
+        app, "info", "print what a file holds", [this] { return daemon::info(common, info); });
+    sub->add_option("file", info.file, "a file, sample:NAME or model:SPEC")->required();
+    sub->add_option("--estimator",
+                    info.estimator,
+                    "what answers between and beyond its angles, too: auto, or a method by name");
 
     sub = command(app, "eval", "evaluate at the directions of a CSV file", [this] {
         return daemon::eval(common, eval);
