@@ -9,26 +9,60 @@
 namespace gonio::proc {
 
 Coverage::Coverage(const BrdfData& data, const std::vector<bool>& groups) {
-    std::vector<Sheet::Cells> cells(data.incidences.size(), Sheet::Cells::missing());
+    const std::size_t cellCount = CellGrid::count();
+    std::array<std::vector<bool>, 3> measured;  // by group and cell
+    for (auto& band : measured) band.assign(data.incidences.size() * cellCount, false);
     for (const FitRow& row : data.rows) {
-        if (const auto cell = cellOf(data, row)) cells[row.group].value[*cell] = 1;
+        const auto cell = cellOf(data, row);
+        if (!cell) continue;
+        for (std::size_t b = 0; b < 3; ++b) {
+            const double f = row.f[std::min(b, data.bandsUsed() - 1)];
+            if (!std::isnan(f)) measured[b][row.group * cellCount + *cell] = true;
+        }
     }
-    for (std::size_t g = 0; g < cells.size(); ++g) {
-        if (!groups[g]) continue;
-        auto sheet = Sheet::over(std::move(cells[g]));
-        if (!sheet) continue;
-        deg_.push_back(data.incidences[g].degrees());
-        sheets_.push_back(std::move(*sheet));
+    for (std::size_t b = 0; b < 3; ++b) {
+        const auto* alike = std::find(measured.begin(), measured.begin() + b, measured[b]);
+        const auto first = static_cast<std::size_t>(alike - measured.begin());
+        kindOf_[b] = first < b ? kindOf_[first] : kinds_.size();
+        if (first == b) kinds_.push_back(kindOf(data, groups, measured[b]));
     }
 }
 
-Reach Coverage::at(const LightView& pair) const {
-    if (deg_.empty()) return {.between = 1, .beyondIncidence = Radians(kPi / 2), .steps = 90};
+Coverage::Kind Coverage::kindOf(const BrdfData& data,
+                                const std::vector<bool>& groups,
+                                const std::vector<bool>& measured) {
+    Kind kind;
+    for (std::size_t g = 0; g < data.incidences.size(); ++g) {
+        if (!groups[g]) continue;
+        Sheet::Cells cells = Sheet::Cells::missing();
+        for (std::size_t cell = 0; cell < cells.value.size(); ++cell) {
+            if (measured[g * cells.value.size() + cell]) cells.value[cell] = 1;
+        }
+        auto sheet = Sheet::over(std::move(cells));
+        if (!sheet) continue;
+        kind.deg.push_back(data.incidences[g].degrees());
+        kind.sheets.push_back(std::move(*sheet));
+    }
+    return kind;
+}
+
+std::array<Reach, 3> Coverage::at(const LightView& pair) const {
+    std::array<Reach, 3> reach;
+    for (std::size_t b = 0; b < 3; ++b) {
+        const auto* alike = std::find(kindOf_.begin(), kindOf_.begin() + b, kindOf_[b]);
+        const auto first = static_cast<std::size_t>(alike - kindOf_.begin());
+        reach[b] = first < b ? reach[first] : kinds_[kindOf_[b]].at(pair);
+    }
+    return reach;
+}
+
+Reach Coverage::Kind::at(const LightView& pair) const {
+    if (deg.empty()) return {.between = 1, .beyondIncidence = Radians(kPi / 2), .steps = 90};
     const double atDeg = pair.in.theta().degrees();
-    const double inside = std::clamp(atDeg, deg_.front(), deg_.back());
-    const AxisPlace place = placeOn(deg_, inside).value_or(AxisPlace{});
-    const double low = sheets_[place.low].at(pair.out).steps;
-    const double high = sheets_[place.high].at(pair.out).steps;
+    const double inside = std::clamp(atDeg, deg.front(), deg.back());
+    const AxisPlace place = placeOn(deg, inside).value_or(AxisPlace{});
+    const double low = sheets[place.low].at(pair.out).steps;
+    const double high = sheets[place.high].at(pair.out).steps;
     return {.between = 4 * place.t * (1 - place.t),
             .beyondIncidence = Radians::fromDegrees(std::abs(atDeg - inside)),
             .steps = std::max(low, high)};

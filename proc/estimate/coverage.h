@@ -1,6 +1,8 @@
 #pragma once
-// How far a pair of directions is from what was measured.
+// How far a pair of directions is from what was measured, band by band: where red was saturated,
+// green may have been measured.
 
+#include <array>
 #include <vector>
 
 #include "proc/core/direction.h"
@@ -21,15 +23,28 @@ struct Reach {
 
 class Coverage {
 public:
-    /// Of the groups that are wanted. A cell counts where any band has a value.
+    /// Of the groups that are wanted.
     Coverage(const BrdfData& data, const std::vector<bool>& groups);
 
-    /// The pair above the horizon, its light at phi = 0.
-    [[nodiscard]] Reach at(const LightView& pair) const;
+    /// By band. The pair above the horizon, its light at phi = 0.
+    [[nodiscard]] std::array<Reach, 3> at(const LightView& pair) const;
+    /// Whether the band was measured anywhere.
+    [[nodiscard]] bool has(std::size_t band) const { return !kinds_[kindOf_[band]].deg.empty(); }
 
 private:
-    std::vector<double> deg_;
-    std::vector<Sheet> sheets_;  ///< of the constant 1
+    /// What bands that were measured at the same places share.
+    struct Kind {
+        std::vector<double> deg;
+        std::vector<Sheet> sheets;  ///< of the constant 1
+
+        [[nodiscard]] Reach at(const LightView& pair) const;
+    };
+    static Kind kindOf(const BrdfData& data,
+                       const std::vector<bool>& groups,
+                       const std::vector<bool>& measured);
+
+    std::vector<Kind> kinds_;
+    std::array<std::size_t, 3> kindOf_{};  ///< by band
 };
 
 /// The cell that a row is of or lies in; empty at the horizon.

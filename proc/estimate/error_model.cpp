@@ -18,6 +18,7 @@ public:
         weight_ += reach * reach;
     }
 
+    [[nodiscard]] bool empty() const { return errors_.empty(); }
     [[nodiscard]] double standard() const {
         return std::sqrt(std::max({0.0, squareWithin(1), squareWithin(2)}));
     }
@@ -61,7 +62,14 @@ ErrorModel::ErrorModel(bool anchored, const std::vector<ProbeError>& between)
     for (const ProbeError& error : between) {
         bins[binOf(error.fromMirror)].add(error, anchored ? error.reach.between : 1);
     }
-    for (std::size_t k = 0; k < bins.size(); ++k) between_[k] = bins[k].standard();
+    double most = 0;
+    for (std::size_t k = 0; k < bins.size(); ++k) {
+        between_[k] = bins[k].standard();
+        most = std::max(most, between_[k]);
+    }
+    for (std::size_t k = 0; k < bins.size(); ++k) {
+        if (bins[k].empty()) between_[k] = most;
+    }
 }
 
 void ErrorModel::learnBeyondIncidence(const std::vector<ProbeError>& errors) {

@@ -49,9 +49,10 @@ private:
     static std::size_t binOf(Radians fromMirror);
 
     bool anchored_ = true;
-    std::array<double, kBins.size()> between_{};  ///< at Reach::between = 1
-    double beyondIncidence_ = 0;                  ///< 10 degrees beyond the last incidence
-    double steps_ = 0;                            ///< 10 layers beyond what was measured
+    /// At Reach::between = 1; where nothing could be predicted, as wrong as at the worst.
+    std::array<double, kBins.size()> between_{};
+    double beyondIncidence_ = 0;  ///< 10 degrees beyond the last incidence
+    double steps_ = 0;            ///< 10 layers beyond what was measured
 };
 
 }  // namespace gonio::proc

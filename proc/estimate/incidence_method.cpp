@@ -100,11 +100,29 @@ IncidenceWeights weightsAt(const std::vector<double>& deg, double atDeg, Inciden
     return {{place.low, 1 - place.t}, {place.high, place.t}};
 }
 
+/// Of one incidence and band.
+struct CellMeans {
+    Sheet::Cells cells;
+    std::vector<double> count;  ///< values per cell; empty: none at all
+
+    void add(std::size_t cell, double value, double uRandom, double uSystematic) {
+        if (count.empty()) {
+            cells = Sheet::Cells::missing();
+            count.assign(cells.value.size(), 0.0);
+        }
+        const double n = ++count[cell];
+        const auto mean = [n](double& to, double add) { to = n == 1 ? add : to + (add - to) / n; };
+        mean(cells.value[cell], value);
+        mean(cells.uRandom[cell], uRandom);
+        mean(cells.uSystematic[cell], uSystematic);
+    }
+};
+
 class SheetMethod final : public IncidenceMethod {
 public:
     SheetMethod(const BrdfData& data, const std::vector<bool>& groups, SheetMethodOptions options)
         : options_(std::move(options)) {
-        for (std::size_t b = 0; b < 3; ++b) addSheets(data, groups, b);
+        addSheets(data, groups);
     }
 
     [[nodiscard]] std::string name() const override { return options_.name; }
@@ -141,48 +159,44 @@ private:
                                                                 : LedBands{};
     }
 
-    void addSheets(const BrdfData& data, const std::vector<bool>& groups, std::size_t band) {
-        for (std::size_t g = 0; g < data.incidences.size(); ++g) {
-            if (!groups[g]) continue;
-            auto sheet = Sheet::over(cellsOf(data, g, band));
-            if (!sheet) continue;
-            bands_[band].deg.push_back(data.incidences[g].degrees());
-            bands_[band].sheets.push_back(std::move(*sheet));
+    /// By group and band; rows that are no cells count for the cell that they lie in, as their
+    /// mean.
+    void addSheets(const BrdfData& data, const std::vector<bool>& groups) {
+        std::vector<std::array<CellMeans, 3>> means(data.incidences.size());
+        for (const FitRow& row : data.rows) {
+            if (!groups[row.group]) continue;
+            if (const auto cell = cellOf(data, row)) addRow(data, row, *cell, means[row.group]);
+        }
+        for (std::size_t g = 0; g < means.size(); ++g) {
+            for (std::size_t b = 0; b < 3; ++b) {
+                if (means[g][b].count.empty()) continue;
+                auto sheet = Sheet::over(std::move(means[g][b].cells));
+                if (!sheet) continue;
+                bands_[b].deg.push_back(data.incidences[g].degrees());
+                bands_[b].sheets.push_back(std::move(*sheet));
+            }
         }
     }
 
-    /// Rows that are no cells count for the cell that they lie in, as their mean.
-    [[nodiscard]] Sheet::Cells cellsOf(const BrdfData& data,
-                                       std::size_t group,
-                                       std::size_t band) const {
-        Sheet::Cells cells = Sheet::Cells::missing();
-        std::vector<double> count(cells.value.size(), 0.0);
-        const double cosThetaI = cos(data.incidences[group]);
-        for (const FitRow& row : data.rows) {
-            if (row.group != group || std::isnan(row.f[band])) continue;
-            const auto cell = cellOf(data, row);
-            if (!cell) continue;
-            double model = 0;
-            if (options_.quantity == SheetQuantity::RatioToModel) {
-                const Carrier& carrier = options_.carrier;
-                model = carrier.family->f(carrier.point, data.nodesOf(row)).value[band];
-            }
-            const AtPair quantity(options_.quantity, cosThetaI * row.cosThetaO, model);
-            const double f = row.f[band];
-            const double slope = quantity.slope(f);
-            const BudgetShare share = data.shareOf(row, band);
-            const double common =
-                std::hypot(row.uSystematic[band], f * std::hypot(share.patch, share.state));
-            const double n = ++count[*cell];
-            const auto mean = [n](double& to, double add) {
-                to = n == 1 ? add : to + (add - to) / n;
-            };
-            mean(cells.value[*cell], quantity.of(f));
-            const double known = data.uKnown ? slope : 0;  // an assumed one is no uncertainty
-            mean(cells.uRandom[*cell], known * row.uRandom[band]);
-            mean(cells.uSystematic[*cell], known * common);
+    void addRow(const BrdfData& data,
+                const FitRow& row,
+                std::size_t cell,
+                std::array<CellMeans, 3>& means) const {
+        LedBands model;
+        if (options_.quantity == SheetQuantity::RatioToModel) {
+            model = options_.carrier.family->f(options_.carrier.point, data.nodesOf(row));
         }
-        return cells;
+        const double cosines = cos(data.incidences[row.group]) * row.cosThetaO;
+        for (std::size_t b = 0; b < 3; ++b) {
+            const double f = row.f[b];
+            if (std::isnan(f)) continue;
+            const AtPair quantity(options_.quantity, cosines, model.value[b]);
+            const double slope = data.uKnown ? quantity.slope(f) : 0;  // else u is assumed: none
+            const BudgetShare share = data.shareOf(row, b);
+            const double common =
+                std::hypot(row.uSystematic[b], f * std::hypot(share.patch, share.state));
+            means[b].add(cell, quantity.of(f), slope * row.uRandom[b], slope * common);
+        }
     }
 
     [[nodiscard]] SheetValue blended(const BandSheets& sheets, const LightView& pair) const {

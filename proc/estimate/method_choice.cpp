@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
+#include <numeric>
 
 namespace gonio::proc {
 namespace {
@@ -145,6 +147,10 @@ private:
             if (!method) return;
             errors.anchored = method->anchored();
             const std::vector<ProbeError> own = one.trial.errorsOf(*method, scale);
+            const auto open = [](const ProbeError& error) { return std::isnan(error.off); };
+            // What leaves a question open cannot be compared.
+            errors.made = errors.made && std::none_of(own.begin(), own.end(), open);
+            if (!errors.made) return;
             to.insert(to.end(), own.begin(), own.end());
         }
     }
@@ -184,6 +190,17 @@ ErrorModel modelOf(const Trials::Errors& errors) {
     model.learnBeyondIncidence(errors.last);
     model.learnEdge(errors.edge);
     return model;
+}
+
+/// Indices of the scores, the least wrong first.
+template <class WrongBy>
+std::vector<std::size_t> ranked(const std::vector<MethodScore>& scores, const WrongBy& wrongBy) {
+    std::vector<std::size_t> order(scores.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return wrongBy(scores[a]) < wrongBy(scores[b]);
+    });
+    return order;
 }
 
 /// Those that the methods which are asked need.
@@ -239,28 +256,30 @@ MethodChoice chooseMethod(const BrdfData& data,
     if (!how.fit.families.empty()) choice.carriers = fitCarriers(data, all, how.fit);
     const Trials trials(data, choice.carriers, how);
     std::vector<Trials::Errors> errors;
-    std::optional<std::size_t> between;
-    std::optional<std::size_t> beyond;
     for (const Candidate& candidate : candidates()) {
         if (!options.only.empty() && candidate.name != options.only) continue;
         Trials::Errors own = trials.errorsOf(candidate, prior);
         if (!own.made) continue;
         choice.scores.push_back(scoreOf(candidate.name, own));
         errors.push_back(std::move(own));
-        const std::size_t last = choice.scores.size() - 1;
-        const MethodScore& score = choice.scores.back();
-        if (!between || score.between() < choice.scores[*between].between()) between = last;
-        if (!score.beyond) continue;
-        if (!beyond || *score.beyond < *choice.scores[*beyond].beyond) beyond = last;
     }
     const auto made = [&](const std::string& name) {
         auto method = methodNamed(name, data, choice.carriers, prior);
         return method ? *method : nullptr;
     };
-    if (between) {
-        choice.between = {made(choice.scores[*between].name), modelOf(errors[*between]), true};
-        choice.beyond = {made(choice.scores[*beyond].name), modelOf(errors[*beyond]), true};
-    } else {
+    // What was fitted to a part of the data need not have been to all of it.
+    const auto leastWrong = [&](const auto& wrongBy) {
+        for (const std::size_t i : ranked(choice.scores, wrongBy)) {
+            ChosenMethod one{made(choice.scores[i].name), modelOf(errors[i]), true};
+            if (one.method) return one;
+        }
+        return ChosenMethod{};
+    };
+    choice.between = leastWrong([](const MethodScore& score) { return score.between(); });
+    choice.beyond = leastWrong([](const MethodScore& score) {
+        return score.beyond.value_or(std::numeric_limits<double>::infinity());
+    });
+    if (!choice.between.method) {
         const auto best = bestByChiSquare(data, choice.carriers);
         const std::string standard = best ? "carried:" + *best : "specular-log";
         choice.between.method = made(options.only.empty() ? standard : options.only);

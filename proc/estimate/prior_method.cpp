@@ -67,7 +67,7 @@ SamplePrior::SamplePrior(std::shared_ptr<const PriorBasis> basis, const BrdfData
         if (evidence.empty()) continue;
         gates_[b] = priorGate(evidence, groups);
         evidence_[b] = std::move(evidence);
-        commonRelative_[b] = commonRelative(few, b);
+        commonRelative_[b] = sharedRelative(few, b);
     }
 }
 

@@ -18,6 +18,21 @@ double distanceOf(const Reach& reach) {
     return reach.between * reach.between + off * off + 1e-6;
 }
 
+BandWay wayOf(const Reach& near, const Reach& far) {
+    const double a = 1 / distanceOf(near);
+    const double b = 1 / distanceOf(far);
+    const double t = b / (a + b);
+    return {
+        .reach = blended(near, far, t), .exchanged = t, .off = std::min(beyond(near), beyond(far))};
+}
+
+/// Of the random errors of the two ways.
+double correlationOf(const LightView& straight, const LightView& exchanged) {
+    const double apart = angleBetween({.in = straight.in, .out = exchanged.in}).degrees() +
+                         angleBetween({.in = straight.out, .out = exchanged.out}).degrees();
+    return std::max(0.0, 1 - apart);
+}
+
 }  // namespace
 
 double beyond(const Reach& reach) {
@@ -29,22 +44,20 @@ ReciprocalAnswer reciprocalAnswer(const IncidenceMethod& method,
                                   const LightView& pair) {
     const LightView straight = withLightAtZero(pair);
     const LightView exchanged = withLightAtZero({.in = pair.out, .out = pair.in});
-    const Reach near = coverage.at(straight);
-    const Reach far = coverage.at(exchanged);
-    const double a = 1 / distanceOf(near);
-    const double b = 1 / distanceOf(far);
-    const double t = b / (a + b);
-    ReciprocalAnswer answer{.value = method.at(straight),
-                            .reach = blended(near, far, t),
-                            .exchanged = t,
-                            .off = std::min(beyond(near), beyond(far))};
+    const std::array<Reach, 3> near = coverage.at(straight);
+    const std::array<Reach, 3> far = coverage.at(exchanged);
+    ReciprocalAnswer answer{.value = method.at(straight), .ways = {}};
+    for (std::size_t b = 0; b < 3; ++b) answer.ways[b] = wayOf(near[b], far[b]);
     if (!method.anchored()) return answer;
     const MethodAnswer one = answer.value;
     const MethodAnswer other = method.at(exchanged);
+    const double correlation = correlationOf(straight, exchanged);
     for (const Band band : kBands) {
+        const double t = answer.ways[index(band)].exchanged;
+        const double u = (1 - t) * one.uRandom[band];
+        const double v = t * other.uRandom[band];
         answer.value.f[band] = (1 - t) * one.f[band] + t * other.f[band];
-        answer.value.uRandom[band] =
-            std::hypot((1 - t) * one.uRandom[band], t * other.uRandom[band]);
+        answer.value.uRandom[band] = std::sqrt(u * u + v * v + 2 * correlation * u * v);
         answer.value.uSystematic[band] =
             (1 - t) * one.uSystematic[band] + t * other.uSystematic[band];
     }

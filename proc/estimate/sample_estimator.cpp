@@ -77,9 +77,14 @@ void labelBeyond(Answer& answer, Kind kind) {
 /// One method's part of an answer.
 struct Part {
     LedBands f, uRandom, uSystematic;
-    double exchanged = 0;
-    double off = 0;
+    std::array<BandWay, 3> ways;
+    bool errorKnown = true;  ///< of the method, in all bands
 };
+
+/// Where a method answers what was measured.
+bool isMeasured(const IncidenceMethod& method, const Reach& reach) {
+    return method.anchored() && reach.within() && reach.between < 1e-4;
+}
 
 Part partOf(const ChosenMethod& chosen,
             const ErrorScale& scale,
@@ -87,12 +92,16 @@ Part partOf(const ChosenMethod& chosen,
             const LightView& pair) {
     const IncidenceMethod& method = *chosen.method;
     const ReciprocalAnswer got = reciprocalAnswer(method, coverage, pair);
-    Part part{got.value.f, got.value.uRandom, got.value.uSystematic, got.exchanged, got.off};
+    Part part{got.value.f, got.value.uRandom, got.value.uSystematic, got.ways};
     const Radians away = angleBetween({.in = mirrorOf(pair.in), .out = pair.out});
-    const double relative =
-        method.ownError() || !chosen.errorsKnown ? 0 : chosen.errors.at(got.reach, away);
     for (const Band band : kBands) {
-        double own = relative * scale.of(part.f[band], static_cast<std::size_t>(band));
+        const Reach& reach = got.ways[index(band)].reach;
+        double own = 0;
+        if (chosen.errorsKnown && !method.ownError()) {
+            own = chosen.errors.at(reach, away) * scale.of(part.f[band], index(band));
+        }
+        const bool known = method.ownError() || chosen.errorsKnown || isMeasured(method, reach);
+        if (!std::isnan(part.f[band])) part.errorKnown = part.errorKnown && known;
         // What a function of all data is wrong by, it is wrong by everywhere alike.
         if (!method.anchored()) own = std::hypot(own, std::exchange(part.uRandom[band], 0.0));
         part.uSystematic[band] = std::hypot(part.uSystematic[band], own);
@@ -179,39 +188,88 @@ Answer SampleEstimator::answer(const LightView& pair) const {
     if (!pair.in.aboveHorizon() || !pair.out.aboveHorizon()) {
         return Answer::none({Flag::BelowHorizon}, Source::Interpolated);
     }
+    const std::array<bool, 3> usable = measuredBands(pair);
+    const auto is = [](bool b) { return b; };
+    if (std::none_of(usable.begin(), usable.end(), is)) return estimate(pair);
     const Answer measured = measured_->answer(pair);
-    const bool usable = !measured.flags.has(Flag::Saturated) && !measured.flags.has(Flag::Blocked);
-    if (measured.source == Source::Measured && measured.present() && usable) return measured;
-    return estimate(pair);
+    if (measured.source != Source::Measured) return estimate(pair);
+    if (std::all_of(usable.begin(), usable.end(), is) && measured.present()) return measured;
+    Answer answer = estimate(pair);
+    for (const Band band : kBands) {
+        if (!usable[index(band)] || std::isnan(measured.f[band])) continue;
+        answer.f[band] = measured.f[band];
+        const auto take = [band](std::optional<LedBands>& to, const std::optional<LedBands>& from) {
+            if (to && from) (*to)[band] = (*from)[band];
+        };
+        take(answer.uRandom, measured.uRandom);
+        take(answer.uSystematic, measured.uSystematic);
+    }
+    return answer;
+}
+
+std::array<bool, 3> SampleEstimator::measuredBands(const LightView& pair) const {
+    constexpr double kSame = 1e-4;  // degrees
+    const auto at = [&](Radians incidence) {
+        return std::abs((incidence - pair.in.theta()).degrees()) < kSame;
+    };
+    const auto* sample = dynamic_cast<const SampleLookup*>(measured_.get());
+    if (sample == nullptr) {
+        const bool any = std::any_of(data_.incidences.begin(), data_.incidences.end(), at);
+        return {any, any, any};
+    }
+    std::array<bool, 3> usable{};
+    const auto cell = CellGrid::cellAt(pair.out.turned(-pair.in.phi()));
+    for (const LedTable& led : sample->set().leds) {
+        if (!cell || !at(led.incidence)) continue;
+        for (std::size_t b = 0; b < 3; ++b) usable[b] = led.bands[b].usable(*cell);
+    }
+    return usable;
 }
 
 Answer SampleEstimator::estimate(const LightView& pair) const {
     const MethodChoice& chosen = choice();
     const Part inside = partOf(chosen.between, chosen.scale, coverage_, pair);
+    LedBands share;  // of the method beyond
+    double least = 1;
+    double most = 0;
+    double exchanged = 1;
+    for (std::size_t b = 0; b < data_.bandsUsed(); ++b) {
+        share.value[b] = smooth(std::min(1.0, inside.ways[b].off));
+        least = std::min(least, share.value[b]);
+        most = std::max(most, share.value[b]);
+        exchanged = std::min(exchanged, inside.ways[b].exchanged);
+    }
     Answer answer;
     answer.flags = corrections_;
     answer.f = inside.f;
-    answer.uRandom = inside.uRandom;
-    answer.uSystematic = inside.uSystematic;
-    const double share = smooth(std::min(1.0, inside.off));
-    if (share < 0.5) labelBetween(answer, kindOf(*chosen.between.method), inside.exchanged);
-    if (share > 0) {
+    LedBands uRandom = inside.uRandom;
+    LedBands uSystematic = inside.uSystematic;
+    bool errorKnown = least >= 1 || inside.errorKnown;
+    // Of three bands, the one that is farthest from what was measured says where the answer is
+    // from.
+    if (most < 0.5) labelBetween(answer, kindOf(*chosen.between.method), exchanged);
+    if (most > 0) {
         const Part outside = partOf(chosen.beyond, chosen.scale, coverage_, pair);
         for (const Band band : kBands) {
-            const auto blend = [&](double& to, double other) {
-                to = (1 - share) * to + share * other;
+            const auto blend = [t = share[band]](double& to, double other) {
+                to = (1 - t) * to + t * other;
             };
             blend(answer.f[band], outside.f[band]);
-            blend((*answer.uRandom)[band], outside.uRandom[band]);
-            blend((*answer.uSystematic)[band], outside.uSystematic[band]);
+            blend(uRandom[band], outside.uRandom[band]);
+            blend(uSystematic[band], outside.uSystematic[band]);
         }
-        if (share >= 0.5) labelBeyond(answer, kindOf(*chosen.beyond.method));
-        if (share < 0.5) answer.flags.set(Flag::Extrapolated);
+        errorKnown = errorKnown && outside.errorKnown;
+        if (most >= 0.5) labelBeyond(answer, kindOf(*chosen.beyond.method));
+        if (most < 0.5) answer.flags.set(Flag::Extrapolated);
+    }
+    if (errorKnown) {
+        if (data_.uKnown) answer.uRandom = uRandom;
+        answer.uSystematic = uSystematic;
     }
     if (data_.bands == BandCount::One) {
         answer.f = LedBands::all(answer.f[Band::R]);
-        answer.uRandom = LedBands::all((*answer.uRandom)[Band::R]);
-        answer.uSystematic = LedBands::all((*answer.uSystematic)[Band::R]);
+        if (answer.uRandom) answer.uRandom = LedBands::all(uRandom[Band::R]);
+        if (answer.uSystematic) answer.uSystematic = LedBands::all(uSystematic[Band::R]);
     }
     return answer;
 }

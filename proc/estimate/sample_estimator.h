@@ -2,7 +2,8 @@
 // Answers for the whole hemisphere of light and view from what a rig measured at a few incidences.
 // The sample is isotropic: the light's azimuth is turned to 0.
 //
-// At a cell's centre and an incidence that were measured: the cell's own mean (source measured).
+// At a cell's centre and an incidence that were measured: the cell's own mean (source measured), in
+// each band that has one.
 // Elsewhere, in the order of trust:
 //   reciprocity    the pair is asked with light and view exchanged, too, and both are weighted by
 //                  how far they are from what was measured (reciprocal_method.h)
@@ -15,7 +16,9 @@
 //
 // u_random is that of the cells that an answer is made of; u_systematic holds theirs, and the
 // method's own error, learned from what it predicted wrong when parts of the sample were left out,
-// or a posterior's deviation. Both are of k = 1.
+// or a posterior's deviation. Both are of k = 1. Where nothing can be left out (fewer than three
+// incidences, draft) the method's error is not known off what was measured, and no uncertainty is
+// told; of data without uncertainties u_random is not told, and u_systematic holds their noise.
 
 #include <functional>
 #include <memory>
@@ -67,6 +70,8 @@ private:
                     SampleEstimatorOptions options);
     void choose() const;
     [[nodiscard]] Answer estimate(const LightView& pair) const;
+    /// Those of which the pair's cell has a value that can be used.
+    [[nodiscard]] std::array<bool, 3> measuredBands(const LightView& pair) const;
 
     std::shared_ptr<const Scatterer> measured_;
     SampleEstimatorOptions options_;

@@ -19,7 +19,7 @@ Radians fromMirror(const BrdfData& data, const FitRow& row) {
 /// Mean over the row's nodes.
 struct RowAnswer {
     LedBands f;
-    Reach reach;
+    std::array<Reach, 3> reach;  ///< by band
 };
 
 RowAnswer rowAnswer(const IncidenceMethod& method,
@@ -29,15 +29,17 @@ RowAnswer rowAnswer(const IncidenceMethod& method,
     for (const WeightedNode& node : nodes) {
         const ReciprocalAnswer one = reciprocalAnswer(method, coverage, viewOf(node.pair));
         mean.f = mean.f + one.value.f * node.weight;
-        mean.reach.between += node.weight * one.reach.between;
-        mean.reach.steps += node.weight * one.reach.steps;
-        mean.reach.beyondIncidence =
-            mean.reach.beyondIncidence + one.reach.beyondIncidence * node.weight;
+        for (std::size_t b = 0; b < 3; ++b) {
+            const Reach& reach = one.ways[b].reach;
+            mean.reach[b].between += node.weight * reach.between;
+            mean.reach[b].steps += node.weight * reach.steps;
+            mean.reach[b].beyondIncidence =
+                mean.reach[b].beyondIncidence + reach.beyondIncidence * node.weight;
+        }
     }
     return mean;
 }
 
-/// `off` is NaN where there is no value.
 ProbeError errorOf(const BrdfData& data,
                    const FitRow& row,
                    std::size_t band,
@@ -138,9 +140,9 @@ std::vector<ProbeError> Trial::errorsOf(const IncidenceMethod& method,
         const FitRow& row = data_->rows[probes_[i].row];
         const Radians away = fromMirror(*data_, row);
         for (std::size_t b = 0; b < data_->bandsUsed(); ++b) {
+            if (std::isnan(row.f[b]) || !coverage_.has(b)) continue;
             ProbeError error = errorOf(*data_, row, b, answers[i].f.value[b], scale);
-            if (std::isnan(error.off)) continue;
-            error.reach = answers[i].reach;
+            error.reach = answers[i].reach[b];
             error.fromMirror = away;
             error.even = probes_[i].even;
             error.lobe = row.f[b] > 0.1 * peaks[row.group][b];

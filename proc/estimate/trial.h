@@ -39,7 +39,8 @@ public:
     [[nodiscard]] const std::vector<bool>& groups() const { return groups_; }
     [[nodiscard]] std::optional<std::size_t> without() const { return without_; }
 
-    /// Of a method made from what it may see, one per value, relative to `scale` of all the data.
+    /// Of a method made from what it may see, one per value of a band that it has seen, relative to
+    /// `scale` of all the data; `off` is NaN where the method has no answer.
     /// Answers are means over a row's nodes, asked both ways (reciprocal_method.h).
     [[nodiscard]] std::vector<ProbeError> errorsOf(const IncidenceMethod& method,
                                                    const ErrorScale& scale) const;

@@ -5,8 +5,11 @@
 
 namespace gonio::proc {
 
-/// Relative to f: the median over the band's positive values of what is common to them all and what
-/// an LED or a patch of directions shares. 0 where nothing is known.
+/// Relative to f: the median over the band's positive values of what is common to them all. 0 where
+/// nothing is known.
 [[nodiscard]] double commonRelative(const BrdfData& data, std::size_t band);
+/// Likewise, and of what an LED or a patch of directions shares: for what does not weigh that by
+/// itself (a fit's covariance does).
+[[nodiscard]] double sharedRelative(const BrdfData& data, std::size_t band);
 
 }  // namespace gonio::proc

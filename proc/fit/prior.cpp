@@ -261,7 +261,7 @@ PriorEvidence::PriorEvidence(const PriorBasis& basis,
     constexpr double kLargestRelative = 0.3;
     const auto k = static_cast<Index>(basis.size());
     MatrixXd prior = basis.covariance();
-    prior.diagonal().array() += 1e-10 * prior.diagonal().maxCoeff();
+    prior.diagonal().array() += 1e-10 * prior.diagonal().maxCoeff() + 1e-12;  // materials all alike
     priorPrecision_ = prior.llt().solve(MatrixXd::Identity(k, k));
     std::vector<Index> counts(groups_.size(), 0);
     for (const FitRow& row : data.rows) ++counts[row.group];
@@ -336,10 +336,10 @@ double PriorEvidence::predictedChiSquare(const PriorPosterior& without, std::siz
 }
 
 bool PriorGate::passes() const {
-    if (chiSquare > kMost) return false;
+    if (!(chiSquare <= kMost)) return false;  // nor NaN
     for (std::size_t g = 0; g < predicted.size(); ++g) {
         const bool end = g == 0 || g + 1 == predicted.size();
-        if (predicted[g] > (end ? kMostPredictedAtEnd : kMostPredicted)) return false;
+        if (!(predicted[g] <= (end ? kMostPredictedAtEnd : kMostPredicted))) return false;
     }
     return true;
 }

@@ -47,6 +47,11 @@ TEST(ErrorModel, IsNotRuledByAFewThatAreFarOff) {
     EXPECT_NEAR(ErrorModel(true, errors).at({.between = 1}, 3_deg), 25, 1e-4);
 }
 
+TEST(ErrorModel, WhereNothingWasPredictedIsAsWrongAsAtItsWorst) {
+    const ErrorModel model(true, {error(0.02, {.between = 1}, 10), error(0.1, {.between = 1}, 50)});
+    EXPECT_NEAR(model.at({.between = 1}, 3_deg), 0.1, 1e-5);
+}
+
 TEST(ErrorModel, OfNothingIsTheLeast) {
     EXPECT_EQ(ErrorModel().at({.between = 1, .steps = 10}, 10_deg), ErrorModel::kLeast);
 }

@@ -132,24 +132,61 @@ TEST(ReciprocalAnswer, IsTheSameBothWays) {
         const auto there = reciprocalAnswer(*method, coverage, pair);
         const auto back = reciprocalAnswer(*method, coverage, {.in = pair.out, .out = pair.in});
         EXPECT_NEAR(there.value.f[Band::R], back.value.f[Band::R], 1e-9);
-        EXPECT_NEAR(there.exchanged, 1 - back.exchanged, 1e-9);
+        EXPECT_NEAR(there.ways[0].exchanged, 1 - back.ways[0].exchanged, 1e-9);
     }
+}
+
+TEST(ReciprocalAnswer, GainsNothingFromTheSameCellsAskedTwice) {
+    auto set = test::sampleSet([](Radians, const Direction&) { return 0.2; });
+    for (LedTable& led : set.leds) {
+        for (CellSamples& cells : led.bands) {
+            for (std::size_t i = 0; i < cells.size(); ++i) cells.uRandom[i] = 0.01;
+        }
+    }
+    const auto data = fitDataOf(set);
+    const auto method = sheetMethod(data, kAll, {.name = "x"});
+    const Coverage coverage(data, kAll);
+    // The mirror direction is its own exchange.
+    const LightView mirror = pairOf(30, 30, 180);
+    const double once = method->at(mirror).uRandom[Band::R];
+    EXPECT_NEAR(reciprocalAnswer(*method, coverage, mirror).value.uRandom[Band::R], once, 1e-9);
+    const LightView apart = pairOf(30, 30, 90);
+    EXPECT_NEAR(reciprocalAnswer(*method, coverage, apart).value.uRandom[Band::R],
+                method->at(apart).uRandom[Band::R] / std::sqrt(2.0),
+                1e-4);
 }
 
 TEST(Coverage, TellsHowFarAPairIsFromWhatWasMeasured) {
     const auto data = fitDataOf(test::sampleSet([](Radians, const Direction&) { return 1.0; }));
     const Coverage coverage(data, kAll);
-    EXPECT_TRUE(coverage.at(pairOf(40, 30, 10)).within());
-    EXPECT_NEAR(coverage.at(pairOf(40, 30, 10)).between, 0, 1e-12);
-    EXPECT_NEAR(coverage.at(pairOf(30, 30, 10)).between, 1, 1e-9);
-    EXPECT_NEAR(coverage.at(pairOf(70, 30, 10)).beyondIncidence.degrees(), 10, 1e-9);
-    EXPECT_NEAR(coverage.at(pairOf(40, 79.5, 0)).steps, 5, 0.01);
-    EXPECT_FALSE(coverage.at(pairOf(40, 79.5, 0)).within());
+    EXPECT_TRUE(coverage.at(pairOf(40, 30, 10))[0].within());
+    EXPECT_NEAR(coverage.at(pairOf(40, 30, 10))[0].between, 0, 1e-12);
+    EXPECT_NEAR(coverage.at(pairOf(30, 30, 10))[0].between, 1, 1e-9);
+    EXPECT_NEAR(coverage.at(pairOf(70, 30, 10))[0].beyondIncidence.degrees(), 10, 1e-9);
+    EXPECT_NEAR(coverage.at(pairOf(40, 79.5, 0))[0].steps, 5, 0.01);
+    EXPECT_FALSE(coverage.at(pairOf(40, 79.5, 0))[0].within());
+}
+
+TEST(Coverage, TellsTheBandsApart) {
+    auto set = test::sampleSet([](Radians, const Direction&) { return 1.0; });
+    const LightView pair = pairOf(40, 30, 10);
+    for (std::size_t i = 0; i < CellGrid::count(); ++i) {
+        const LightView to{.in = pair.out, .out = CellGrid::centre(i)};
+        if (angleBetween(to) < 6_deg) set.leds[2].bands[0].flags[i] = Flags{Flag::Saturated};
+    }
+    set.leds[1].bands[2] = CellSamples::missing(CellGrid::count());
+    const Coverage coverage(fitDataOf(set), kAll);
+    const auto reach = coverage.at(pair);
+    EXPECT_GT(reach[0].steps, 4);
+    EXPECT_TRUE(reach[1].within());
+    EXPECT_TRUE(coverage.at(pairOf(20, 30, 10))[0].within());
+    EXPECT_NEAR(coverage.at(pairOf(20, 30, 10))[1].between, 0, 1e-12);
+    EXPECT_NEAR(coverage.at(pairOf(20, 30, 10))[2].between, 1, 1e-9);
 }
 
 TEST(Coverage, OfNothingIsFarFromEverything) {
     const Coverage coverage(BrdfData{}, {});
-    EXPECT_FALSE(coverage.at(pairOf(0, 0, 0)).within());
+    EXPECT_FALSE(coverage.at(pairOf(0, 0, 0))[0].within());
 }
 
 }  // namespace
