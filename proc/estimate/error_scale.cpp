@@ -1,6 +1,5 @@
 #include "proc/estimate/error_scale.h"
 
-#include <algorithm>
 #include <vector>
 
 namespace gonio::proc {
@@ -28,7 +27,7 @@ ErrorScale::ErrorScale(const BrdfData& data) : ErrorScale() {
             all.sum += mean.sum / mean.weight;
             all.weight += 1;
         }
-        if (all.weight > 0) floor_[b] = std::max(kLeast, kShareOfMean * all.sum / all.weight);
+        if (all.weight > 0) mean_[b] = std::max(0.0, all.sum / all.weight);
     }
 }
 

@@ -85,8 +85,11 @@ const std::vector<Candidate>& candidates() {
 /// Everything that is left out in turn, with the carriers of what is left.
 class Trials {
 public:
-    Trials(const BrdfData& data, const Carriers& all, const MethodChoiceOptions& options)
-        : scale_(data) {
+    Trials(const BrdfData& data,
+           const ErrorScale& scale,
+           const Carriers& all,
+           const MethodChoiceOptions& options)
+        : scale_(scale) {
         const std::size_t n = data.incidences.size();
         if (n < 3 || !options.learn) return;
         for (std::size_t g = 1; g + 1 < n; ++g) {
@@ -185,8 +188,8 @@ MethodScore scoreOf(const std::string& name, const Trials::Errors& errors) {
     return score;
 }
 
-ErrorModel modelOf(const Trials::Errors& errors) {
-    ErrorModel model(errors.anchored, errors.between);
+ErrorModel modelOf(const ErrorScale& scale, const Trials::Errors& errors) {
+    ErrorModel model(scale, errors.anchored, errors.between);
     model.learnBeyondIncidence(errors.last);
     model.learnEdge(errors.edge);
     return model;
@@ -250,11 +253,11 @@ MethodChoice chooseMethod(const BrdfData& data,
                           const MethodChoiceOptions& options) {
     const std::vector<bool> all(data.incidences.size(), true);
     MethodChoice choice;
-    choice.scale = ErrorScale(data);
     MethodChoiceOptions how = options;
     how.fit.families = familiesOf(options);
     if (!how.fit.families.empty()) choice.carriers = fitCarriers(data, all, how.fit);
-    const Trials trials(data, choice.carriers, how);
+    const ErrorScale scale(data);
+    const Trials trials(data, scale, choice.carriers, how);
     std::vector<Trials::Errors> errors;
     for (const Candidate& candidate : candidates()) {
         if (!options.only.empty() && candidate.name != options.only) continue;
@@ -270,7 +273,7 @@ MethodChoice chooseMethod(const BrdfData& data,
     // What was fitted to a part of the data need not have been to all of it.
     const auto leastWrong = [&](const auto& wrongBy) {
         for (const std::size_t i : ranked(choice.scores, wrongBy)) {
-            ChosenMethod one{made(choice.scores[i].name), modelOf(errors[i]), true};
+            ChosenMethod one{made(choice.scores[i].name), modelOf(scale, errors[i]), true};
             if (one.method) return one;
         }
         return ChosenMethod{};

@@ -49,7 +49,6 @@ struct MethodChoice {
     ChosenMethod beyond;
     std::vector<MethodScore> scores;  ///< of all candidates, by between()
     Carriers carriers;                ///< fitted to all incidences
-    ErrorScale scale;                 ///< what errors are relative to
 };
 
 struct MethodChoiceOptions {

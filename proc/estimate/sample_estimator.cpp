@@ -86,10 +86,7 @@ bool isMeasured(const IncidenceMethod& method, const Reach& reach) {
     return method.anchored() && reach.within() && reach.between < 1e-4;
 }
 
-Part partOf(const ChosenMethod& chosen,
-            const ErrorScale& scale,
-            const Coverage& coverage,
-            const LightView& pair) {
+Part partOf(const ChosenMethod& chosen, const Coverage& coverage, const LightView& pair) {
     const IncidenceMethod& method = *chosen.method;
     const ReciprocalAnswer got = reciprocalAnswer(method, coverage, pair);
     Part part{got.value.f, got.value.uRandom, got.value.uSystematic, got.ways};
@@ -98,7 +95,7 @@ Part partOf(const ChosenMethod& chosen,
         const Reach& reach = got.ways[index(band)].reach;
         double own = 0;
         if (chosen.errorsKnown && !method.ownError()) {
-            own = chosen.errors.at(reach, away) * scale.of(part.f[band], index(band));
+            own = chosen.errors.of(part.f[band], index(band), reach, away);
         }
         const bool known = method.ownError() || chosen.errorsKnown || isMeasured(method, reach);
         if (!std::isnan(part.f[band])) part.errorKnown = part.errorKnown && known;
@@ -228,7 +225,7 @@ std::array<bool, 3> SampleEstimator::measuredBands(const LightView& pair) const 
 
 Answer SampleEstimator::estimate(const LightView& pair) const {
     const MethodChoice& chosen = choice();
-    const Part inside = partOf(chosen.between, chosen.scale, coverage_, pair);
+    const Part inside = partOf(chosen.between, coverage_, pair);
     LedBands share;  // of the method beyond
     double least = 1;
     double most = 0;
@@ -249,7 +246,7 @@ Answer SampleEstimator::estimate(const LightView& pair) const {
     // from.
     if (most < 0.5) labelBetween(answer, kindOf(*chosen.between.method), exchanged);
     if (most > 0) {
-        const Part outside = partOf(chosen.beyond, chosen.scale, coverage_, pair);
+        const Part outside = partOf(chosen.beyond, coverage_, pair);
         for (const Band band : kBands) {
             const auto blend = [t = share[band]](double& to, double other) {
                 to = (1 - t) * to + t * other;

@@ -49,6 +49,7 @@ ProbeError errorOf(const BrdfData& data,
     error.off = answer - row.f[band];
     error.u = data.uKnown ? data.uOf(row, band) : 0;
     error.toAnswer = scale.of(answer, band);
+    error.dark = scale.isDark(answer, band);
     error.toBoth = std::hypot(
         std::hypot(error.toAnswer, scale.of(row.f[band], band)) / std::sqrt(2.0), error.u);
     return error;
