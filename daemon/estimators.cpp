@@ -8,6 +8,7 @@
 #include "proc/estimate/scattered_estimator.h"
 #include "proc/estimate/seed004.h"
 #include "proc/formats/points_csv.h"
+#include "proc/table/rotations.h"
 #include "proc/table/scattered_of.h"
 
 namespace gonio::daemon {
@@ -48,7 +49,15 @@ Result<proc::Scattered> scatteredOf(const Material& material) {
 }
 
 Result<Estimated> ofMaterial(Material material, const EstimatorChoice& choice) {
-    if (choice.name == "none") {
+    const bool turned =
+        material.sample != nullptr && proc::rotationsOf(*material.sample).size() > 1;
+    if (turned && choice.name != "auto" && choice.name != "none") {
+        return Error{ErrorKind::Usage,
+                     "a sample of several rotations, and --estimator " + choice.name +
+                         " takes one as isotropic; --estimator none, or first: gonio merge "
+                         "--isotropic"};
+    }
+    if (choice.name == "none" || turned) {
         Opened lookup = material.scatterer;
         return Estimated{std::move(lookup), std::move(material)};
     }

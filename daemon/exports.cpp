@@ -7,6 +7,7 @@
 #include "proc/formats/gonio_exr.h"
 #include "proc/formats/points_csv.h"
 #include "proc/formats/zemax.h"
+#include "proc/table/rotations.h"
 #include "proc/table/specular_fill.h"
 
 namespace gonio::daemon {
@@ -39,6 +40,15 @@ ExportedFile zemaxFile(const Material& surface, const proc::SpecularGrid& grid, 
     return {mono ? "" : suffixOf(band), std::move(written.bytes), std::move(written.loss)};
 }
 
+/// The stage's rotations, where the sample was ever turned.
+void turnAsMeasured(proc::SpecularGrid& grid, const proc::SampleSet& sample) {
+    const std::vector<Radians> rotations = proc::rotationsOf(sample);
+    if (rotations.size() == 1 && rotations.front() == Radians()) return;
+    grid.symmetry = proc::TableSymmetry::Asymmetrical4D;
+    grid.rotationDeg.clear();
+    for (const Radians one : rotations) grid.rotationDeg.push_back(proc::fileDegrees(one));
+}
+
 std::vector<ExportedFile> zemaxFiles(const Material& surface, std::optional<Band> only) {
     if (surface.table != nullptr) {  // as it is: nothing to resample
         proc::Written written = proc::writeZemax(*surface.table);
@@ -46,7 +56,8 @@ std::vector<ExportedFile> zemaxFiles(const Material& surface, std::optional<Band
     }
     std::vector<double> incidences;
     for (Radians i : surface.incidences()) incidences.push_back(proc::fileDegrees(i));
-    const auto grid = proc::SpecularGrid::oneDegree(incidences, proc::TableSymmetry::Asymmetrical);
+    auto grid = proc::SpecularGrid::oneDegree(incidences, proc::TableSymmetry::Asymmetrical);
+    if (surface.sample != nullptr) turnAsMeasured(grid, *surface.sample);
     const bool mono = surface.scatterer->bandCount() == BandCount::One;
     std::vector<ExportedFile> files;
     for (Band band : kBands) {

@@ -1,5 +1,7 @@
 #include "daemon/material.h"
 
+#include <algorithm>
+
 #include "daemon/store.h"
 #include "proc/formats/open.h"
 #include "proc/models/spec.h"
@@ -17,7 +19,10 @@ constexpr std::string_view kSample = "sample:";
 std::vector<Radians> Material::incidences() const {
     std::vector<Radians> all;
     if (sample != nullptr) {
-        for (const proc::LedTable& led : sample->leds) all.push_back(led.incidence);
+        for (const proc::LedTable& led : sample->leds) {
+            if (std::find(all.begin(), all.end(), led.incidence) == all.end())
+                all.push_back(led.incidence);
+        }
     } else if (table != nullptr) {
         for (double degrees : table->incidenceDeg) all.push_back(Radians::fromDegrees(degrees));
     } else {

@@ -21,7 +21,7 @@ struct Material {
     const proc::SampleSet* sample = nullptr;       ///< of the scatterer, when it is a .gonio
     const proc::SpecularTable* table = nullptr;    ///< of the scatterer, when it is a Zemax file
 
-    /// The incidences that the material knows: the LEDs' where it is a formula.
+    /// The incidences that the material knows, each once: the LEDs' where it is a formula.
     [[nodiscard]] std::vector<Radians> incidences() const;
 };
 

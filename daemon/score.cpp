@@ -23,7 +23,9 @@ struct Deviation {
 };
 
 /// Mean of the truth over the cell, per band; empty where any part of it has no truth.
-std::optional<LedBands> cellMean(const Scatterer& truth, const Direction& wi, std::size_t cell) {
+std::optional<LedBands> cellMean(const Scatterer& truth,
+                                 const proc::LedTable& led,
+                                 std::size_t cell) {
     const auto bounds = proc::CellGrid::bounds(cell);
     const double cosTop = cos(bounds.thetaLow);
     const double cosBottom = cos(bounds.thetaHigh);
@@ -35,7 +37,7 @@ std::optional<LedBands> cellMean(const Scatterer& truth, const Direction& wi, st
             const Radians phi =
                 bounds.phiLow + (bounds.phiHigh - bounds.phiLow) * ((j + 0.5) / kSubdivisions);
             const Answer answer =
-                truth.answer({.in = wi, .out = Direction::fromSpherical(theta, phi)});
+                truth.answer(proc::pairInSample(led, Direction::fromSpherical(theta, phi)));
             if (!answer.present()) return std::nullopt;
             sum = sum + answer.f;
         }
@@ -46,7 +48,7 @@ std::optional<LedBands> cellMean(const Scatterer& truth, const Direction& wi, st
 /// Relative slope of the truth at the cell's centre, 1/degree, per band: central differences over
 /// one degree along theta and along phi. Empty where a neighbour has no truth.
 std::optional<LedBands> relativeSlope(const Scatterer& truth,
-                                      const Direction& wi,
+                                      const proc::LedTable& led,
                                       std::size_t cell) {
     const Direction centre = proc::CellGrid::centre(cell);
     const Radians theta = centre.theta();
@@ -54,7 +56,7 @@ std::optional<LedBands> relativeSlope(const Scatterer& truth,
     const Radians half = 0.5_deg;
     const Radians across(half.value() / std::max(sin(theta), 1e-3));
     const auto at = [&](Radians t, Radians p) {
-        return truth.answer({.in = wi, .out = Direction::fromSpherical(t, p)});
+        return truth.answer(proc::pairInSample(led, Direction::fromSpherical(t, p)));
     };
     const Answer here = at(theta, phi);
     const Answer up = at(theta + half, phi);
@@ -76,17 +78,16 @@ void collect(const proc::LedTable& led,
              const Scatterer& truth,
              std::size_t cell,
              std::vector<Deviation>& out) {
-    const Direction wi = Direction::fromSpherical(led.incidence, Radians(0));
     const bool any = std::any_of(led.bands.begin(), led.bands.end(), [&](const auto& band) {
-        return band.flags[cell].has(Flag::Measured);
+        return cell < band.size() && band.present(cell);
     });
     if (!any) return;
-    const auto mean = cellMean(truth, wi, cell);
-    const auto slope = relativeSlope(truth, wi, cell);
+    const auto mean = cellMean(truth, led, cell);
+    const auto slope = relativeSlope(truth, led, cell);
     if (!mean || !slope) return;
     for (Band b : kBands) {
         const proc::CellSamples& samples = led.bands[index(b)];
-        if (!samples.flags[cell].has(Flag::Measured)) continue;
+        if (cell >= samples.size() || !samples.present(cell)) continue;
         if (!((*mean)[b] >= kLowestF) || !((*slope)[b] <= kSteepestPerDegree)) continue;
         const double error = std::abs(samples.f[cell] - (*mean)[b]);
         const double u = std::hypot(samples.uRandom[cell], samples.uSystematic[cell]);

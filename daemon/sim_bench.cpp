@@ -128,6 +128,7 @@ Result<sim::Placement> makePlacement(const SimState& state, const Store& store) 
         placement.surface = white ? references->white : references->black;
         if (white) placement.turned = state.turned;
     } else {
+        placement.turned = state.turned;
         Result<Material> material = openMaterial(state.placed, store.root());
         if (!material) return material.error();
         placement.surface = std::move(material->scatterer);
@@ -150,6 +151,8 @@ void describe(const SimState& state, proc::SampleInfo& info) {
         sample += (sample.empty() ? "" : ",") + name + "=" + size;
     }
     if (!sample.empty()) info.extra["sample_errors"] = sample;
+    if (state.turned != Radians())
+        info.extra["sample_turned_deg"] = shortest(static_cast<float>(state.turned.degrees()));
 }
 
 Result<std::shared_ptr<const Scatterer>> truthOf(const proc::SampleInfo& info,

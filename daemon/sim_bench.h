@@ -26,7 +26,7 @@ struct SimState {
     sim::Wedge wedge;
     std::string rigErrors = "none";  ///< as on the command line: sim/rig_errors.h
     sim::SampleErrors sampleErrors;
-    Radians turned{};  ///< the white, about its normal
+    Radians turned{};  ///< the white or the sample, about its normal
 };
 
 /// What is no sample: nothing, black, white, zero or mirror.

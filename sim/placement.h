@@ -24,9 +24,9 @@ enum class Role {
 struct Placement {
     Role role = Role::Nothing;
     std::shared_ptr<const Scatterer>
-        surface;            ///< of Sample, White, Black; shared with the host's truth
-    Wedge wedge;            ///< of Sample and Mirror: the references lie flat
-    Radians turned{};       ///< of White, about its normal: its errors per direction turn with it
+        surface;       ///< of Sample, White, Black; shared with the host's truth
+    Wedge wedge;       ///< of Sample and Mirror: the references lie flat
+    Radians turned{};  ///< of Sample and White, about its normal; a white's errors turn with it
     SampleErrors errors{};  ///< of Sample; the ambient light of whatever is placed
 };
 

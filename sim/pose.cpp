@@ -58,9 +58,11 @@ std::array<Wedge, kLeds> waves(std::uint64_t seed, Radians size) {
     return spots;
 }
 
-Pose::Pose(const Wedge& surface, const Wedge& spot)
-    : flat_(surface.flat() && spot.flat()),
-      toSurface_((rotation(surface) * rotation(spot)).transpose()) {}
+Pose::Pose(const Wedge& surface, const Wedge& spot, Radians turned)
+    : flat_(surface.flat() && spot.flat() && turned == Radians()),
+      toSurface_((rotation(surface) * rotation(spot) *
+                  Eigen::AngleAxisd(turned.value(), Eigen::Vector3d::UnitZ()).toRotationMatrix())
+                     .transpose()) {}
 
 Direction Pose::seenFromSurface(const Direction& d) const {
     if (flat_) return d;

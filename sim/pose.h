@@ -30,13 +30,15 @@ struct Wedge {
 /// hypot(aboutX, aboutY). Size 0: flat.
 [[nodiscard]] std::array<Wedge, kLeds> waves(std::uint64_t seed, Radians size);
 
-/// A surface on one wedge, and its spot on another.
+/// A surface on one wedge, its spot on another, and turned about its own normal by `turned`,
+/// counter-clockwise seen from above.
 class Pose {
 public:
     Pose() = default;
-    Pose(const Wedge& surface, const Wedge& spot);
+    Pose(const Wedge& surface, const Wedge& spot, Radians turned = {});
 
-    /// The same direction in the surface's frame; the very same bits when it is flat.
+    /// The same direction in the surface's frame; the very same bits when it is flat and
+    /// not turned.
     [[nodiscard]] Direction seenFromSurface(const Direction& d) const;
 
 private:

@@ -12,7 +12,7 @@ double orZero(double f) { return std::isfinite(f) ? f : 0; }
 Pose poseOf(const Placement& placement, const Flaws& flaws, int led) {
     if (placement.role != Role::Sample) return {};
     const auto spots = waves(flaws.seed, placement.errors.waviness);
-    return {placement.wedge, spots[static_cast<std::size_t>(led)]};
+    return {placement.wedge, spots[static_cast<std::size_t>(led)], placement.turned};
 }
 
 Direction turnedBy(Radians angle, const Direction& wo) {

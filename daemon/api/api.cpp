@@ -13,6 +13,7 @@
 #include "daemon/problem.h"
 #include "proc/core/number_text.h"
 #include "proc/formats/file_bytes.h"
+#include "proc/table/rotations.h"
 
 namespace gonio::daemon {
 namespace {
@@ -276,6 +277,7 @@ Result<ApiReply> postJob(const Call& call) {
                    .against = fields.text("against")};
     job.limit = fields.number("limit").value_or(job.limit);
     const double draws = fields.number("monte_carlo").value_or(0);
+    const double rotation = fields.number("rotation_deg").value_or(0);
     const std::optional<double> target = fields.number("target_uncertainty");
     const std::optional<double> budget = fields.number("time_budget_s");
     if (Result<void> good = fields.verdict(); !good) return good.error();
@@ -285,6 +287,11 @@ Result<ApiReply> postJob(const Call& call) {
         return Error{ErrorKind::Usage, "monte_carlo: wanted a whole number"};
     }
     job.monteCarlo = static_cast<int>(draws);
+    if (!(std::abs(rotation) <= 360)) {
+        return Error{ErrorKind::Usage,
+                     "rotation_deg: " + shortest(rotation) + ", wanted -360 to 360 degrees"};
+    }
+    job.rotation = proc::rotationOf(rotation);
     if (effortName) {
         const Result<Effort> effort = parseEffort(*effortName);
         if (!effort) return effort.error();

@@ -59,6 +59,7 @@ struct MeasureOptions {
     std::string backing;  ///< black or white; empty: not said
     std::string against;  ///< the same sample on the other backing; empty: none
     int monteCarlo = 0;   ///< draws per cell; 0: where first order is wrong
+    double rotationDegrees = 0;    ///< of the sample on the stage
     std::filesystem::path output;  ///< a copy of the .gonio; empty: the store only
 };
 Result<void> measure(const CommonOptions& common, const MeasureOptions& options);

@@ -54,6 +54,7 @@ Json sampleJson(const proc::SampleSet& sample) {
     for (const proc::LedTable& led : sample.leds) {
         Json entry;
         entry["theta_i_deg"] = proc::fileDegrees(led.incidence);
+        entry["rotation_deg"] = proc::fileDegrees(led.rotation);
         for (Band b : kBands) {
             const proc::CellSamples& cells = led.bands[index(b)];
             int measured = 0;

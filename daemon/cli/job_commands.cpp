@@ -194,7 +194,8 @@ Result<void> measure(const CommonOptions& common, const MeasureOptions& options)
                  {"force", options.force},
                  {"backing", options.backing.empty() ? Json() : Json(options.backing)},
                  {"against", options.against},
-                 {"monte_carlo", options.monteCarlo}};
+                 {"monte_carlo", options.monteCarlo},
+                 {"rotation_deg", options.rotationDegrees}};
     request.update(toJson(options.goal));
     const auto done = FollowedJob(common, client, options.name)
                           .run(request.dump(-1, ' ', false, Json::error_handler_t::replace));

@@ -118,7 +118,8 @@ void Program::addSim() {
     sub->add_option("--backing", place.backing, "what lies below it: black or white");
     sub->add_option("--soft", place.softness, "excess of a pressed sample's lobe, which relaxes");
     sub->add_option("--ambient", place.ambient, "light that leaks in, as of this f cos(theta)");
-    sub->add_option("--turned", place.turnedDegrees, "the white, about its normal, degrees");
+    sub->add_option(
+        "--turned", place.turnedDegrees, "the white or the sample, about its normal, degrees");
 
     sub = command(*sim, "score", "hold measured samples against the simulated rig's truth", [this] {
         return simScore(common, score);
@@ -191,6 +192,11 @@ void Program::addMeasuring() {
         "--monte-carlo",
         measure.monteCarlo,
         "draws for the uncertainty of each cell; unless said, only where first order is wrong");
+    sub->add_option("--rotation",
+                    measure.rotationDegrees,
+                    "how far the sample is turned about its normal, counter-clockwise seen from "
+                    "above, degrees (kept with the sample)")
+        ->check(CLI::Range(-360.0, 360.0));
     sub->add_option("-o,--output", measure.output, "also write the .gonio here");
 
     sub = command(app,

@@ -56,6 +56,9 @@ Result<void> check(const JobRequest& request) {
                      "name '" + request.name + "': only measure and recalibrate have one"};
     }
     if (Result<void> good = checkBacking(request); !good) return good;
+    if (request.rotation != Radians() && request.kind != JobKind::Measure) {
+        return Error{ErrorKind::Usage, "rotation: only measure has it"};
+    }
     if (request.notes.size() > kLongestNotes) {
         return Error{ErrorKind::Usage, "notes: more than 4096 bytes"};
     }

@@ -49,6 +49,7 @@ struct JobRequest {
         backing{};          ///< measure: what lies under the sample; empty: not said
     int monteCarlo = 0;     ///< measure, recalibrate: draws per cell; 0: where first order is wrong
     std::string against{};  ///< measure: the same sample on the other backing; empty: none
+    Radians rotation{};     ///< measure: of the sample on the stage (proc/table/rotations.h)
 };
 /// Usage error for what no rig can do.
 [[nodiscard]] Result<void> check(const JobRequest& request);

@@ -2,6 +2,7 @@
 
 #include "daemon/sample_quality.h"
 #include "proc/core/number_text.h"
+#include "proc/formats/file_degrees.h"
 
 namespace gonio::daemon {
 
@@ -92,13 +93,16 @@ Result<void> JobRun::fitsThisRig(const ReferenceRecord& reference) const {
                      std::to_string(leds()) + "; run: gonio calibrate " + kind};
 }
 
-Result<std::string> rawBytes(const proc::SampleInfo& info, std::vector<proc::RawState> states) {
-    return proc::encodeGraw({.info = {{"name", info.name},
-                                      {"rig_serial", info.rigSerial},
-                                      {"profile_hash", info.profileHash},
-                                      {"date", info.dateUtc},
-                                      {"software", info.softwareVersion}},
-                             .states = std::move(states)});
+Result<std::string> rawBytes(const proc::SampleSet& set, std::vector<proc::RawState> states) {
+    const proc::SampleInfo& info = set.info;
+    std::map<std::string, std::string> about{{"name", info.name},
+                                             {"rig_serial", info.rigSerial},
+                                             {"profile_hash", info.profileHash},
+                                             {"date", info.dateUtc},
+                                             {"software", info.softwareVersion}};
+    const double turned = set.leds.empty() ? 0 : proc::fileDegrees(set.leds.front().rotation);
+    if (turned != 0) about["rotation_deg"] = shortest(turned);
+    return proc::encodeGraw({.info = std::move(about), .states = std::move(states)});
 }
 
 }  // namespace gonio::daemon

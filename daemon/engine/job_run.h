@@ -66,8 +66,8 @@ private:
     RigProfile profile_;
 };
 
-/// As `.graw`.
-[[nodiscard]] Result<std::string> rawBytes(const proc::SampleInfo& info,
+/// As `.graw`, with what the set says of itself and of its rotation.
+[[nodiscard]] Result<std::string> rawBytes(const proc::SampleSet& set,
                                            std::vector<proc::RawState> states);
 
 }  // namespace gonio::daemon

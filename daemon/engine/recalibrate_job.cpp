@@ -10,6 +10,7 @@
 #include "proc/core/number_text.h"
 #include "proc/formats/file_bytes.h"
 #include "proc/formats/gonio_exr.h"
+#include "proc/table/rotations.h"
 
 namespace gonio::daemon {
 namespace {
@@ -149,6 +150,7 @@ Result<std::string> workedOut(const Desk& desk,
                                              referencesOf(*loaded, *certified, profile),
                                              std::move(info),
                                              draws);
+    proc::turnTo(sample, before.sample.leds.front().rotation);
     judgeTable(sample, profile.quality.sample);
     return proc::encodeGonio(sample);
 }

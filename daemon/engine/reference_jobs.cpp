@@ -97,7 +97,8 @@ Result<Json> calibrateTile(const JobRun& run, const std::string& kind) {
     const std::vector<Radians> angles = run.ledAngles();
     const std::optional<double> warmth = run.celsius();
     const auto kept = run.whileAlive([&]() -> Result<CalibrationRecord> {
-        const Result<std::string> raw = rawBytes(about, std::move(captured->raw.states));
+        const Result<std::string> raw =
+            rawBytes({.info = about, .leds = {}}, std::move(captured->raw.states));
         if (!raw) return raw.error();
         const Result<std::string> bytes = encodeReference({about, captured->signals}, angles);
         if (!bytes) return bytes.error();

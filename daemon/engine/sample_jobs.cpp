@@ -8,7 +8,9 @@
 #include "daemon/sample_quality.h"
 #include "daemon/stored_darks.h"
 #include "proc/core/log.h"
+#include "proc/formats/file_degrees.h"
 #include "proc/formats/gonio_exr.h"
+#include "proc/table/rotations.h"
 
 namespace gonio::daemon {
 namespace {
@@ -59,7 +61,7 @@ Result<SampleRecord> keep(const JobRun& run,
                           const std::string& name,
                           const proc::SampleSet& set,
                           std::vector<proc::RawState> states) {
-    const Result<std::string> raw = rawBytes(set.info, std::move(states));
+    const Result<std::string> raw = rawBytes(set, std::move(states));
     if (!raw) return raw.error();
     const Result<std::string> bytes = proc::encodeGonio(set);
     if (!bytes) return bytes.error();
@@ -188,6 +190,7 @@ Result<Json> measure(const JobRun& run) {
     const auto kept = run.whileAlive([&]() -> Result<SampleRecord> {
         const Stopwatch calibrating(run.bench().computer);
         sample = calibrateSample(captured->signals, angles, references, about, drawsOf(about));
+        proc::turnTo(sample, run.request().rotation);
         judgeCapture(sample, *captured, references);
         judgeTable(sample, run.profile().quality.sample);
         judgeBacking(sample, *backing, run.profile().quality.sample);
@@ -205,6 +208,7 @@ Result<Json> measure(const JobRun& run) {
                 {"file", kept->file.string()},
                 {"raw", kept->raw.string()},
                 {"effort", sample.info.effort},
+                {"rotation_deg", proc::fileDegrees(run.request().rotation)},
                 {"calibration", loaded->set.id()},
                 {"measured_cells", measuredCells(sample)},
                 {"median_relative_uncertainty", sample.info.achievedUncertainty.value_or(0)},

@@ -40,8 +40,8 @@ Result<void> checkErrors(const PlaceRequest& request) {
         return refused("turned by " + shortest(request.turnedDegrees) +
                        ", wanted -180 to 180 degrees");
     }
-    if (request.turnedDegrees != 0 && request.what != "white") {
-        return refused("only the white can be turned");
+    if (request.turnedDegrees != 0 && request.what != "white" && isReference(request.what)) {
+        return refused("only the white or a sample can be turned");
     }
     if (request.backing != "black" && request.backing != "white") {
         return refused("backing '" + request.backing + "': wanted black or white");
@@ -64,7 +64,8 @@ Result<void> checkErrors(const PlaceRequest& request) {
 Result<void> checkLit(const sim::Placement& placement, std::uint64_t seed) {
     const auto spots = sim::waves(seed, placement.errors.waviness);
     for (int led = 0; led < sim::kLeds; ++led) {
-        const sim::Pose pose(placement.wedge, spots[static_cast<std::size_t>(led)]);
+        const sim::Pose pose(
+            placement.wedge, spots[static_cast<std::size_t>(led)], placement.turned);
         const Direction in = pose.seenFromSurface(sim::ledDirection(led));
         if (!in.aboveHorizon()) continue;  // it does not light it, whatever it is
         const auto answers = [&](std::size_t cell) {
@@ -75,9 +76,10 @@ Result<void> checkLit(const sim::Placement& placement, std::uint64_t seed) {
         while (cell < proc::CellGrid::count() && !answers(cell)) ++cell;
         if (cell < proc::CellGrid::count()) continue;
         return refused(
-            "tilted or wavy, LED " + std::to_string(led) + " is " + fixed(in.theta().degrees(), 2) +
-            " degrees from its normal, of which the file says nothing; place a model: or "
-            "a table that answers there");
+            "tilted, wavy or turned, LED " + std::to_string(led) + " is " +
+            fixed(in.theta().degrees(), 2) + " degrees from its normal, at azimuth " +
+            fixed(in.phi().degrees(), 2) +
+            ", of which the file says nothing; place a model: or a table that answers there");
     }
     return {};
 }
@@ -170,7 +172,8 @@ Result<bool> SimPort::place(const PlaceRequest& request) {
     }
     Result<sim::Placement> placement = makePlacement(next, store_);
     if (!placement) return placement.error();
-    const bool flat = next.wedge.flat() && next.sampleErrors.waviness == Radians();
+    const bool flat =
+        next.wedge.flat() && next.sampleErrors.waviness == Radians() && next.turned == Radians();
     if (!flat && placement->role == sim::Role::Sample) {
         if (Result<void> lit = checkLit(*placement, next.seed); !lit) return lit.error();
     }

@@ -22,7 +22,7 @@ struct PlaceRequest {
     std::string backing = "black";  ///< or white
     double softness = 0;
     double ambient = 0;
-    double turnedDegrees = 0;  ///< white: about its normal
+    double turnedDegrees = 0;  ///< white or sample: about its normal
     std::optional<std::uint64_t> seed{};
     std::optional<std::string> serial{};
     std::optional<std::string> systematic{};  ///< none, random, or stratum:K

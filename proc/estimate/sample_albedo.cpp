@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "proc/optics/cell_grid.h"
+#include "proc/table/rotations.h"
 
 namespace gonio::proc {
 namespace {
@@ -95,6 +96,26 @@ BandAlbedo meanOf(const std::vector<Albedo>& leds,
             .missing = std::clamp(1 - answered, 0.0, 1.0)};
 }
 
+/// Each rotation counts as much as another; what is common to them does not average out.
+Albedo meanOverRotations(const SampleSet& sample, const std::vector<Radians>& rotations) {
+    const double share = 1 / static_cast<double>(rotations.size());
+    Albedo mean{.bands = {}, .evaluations = 0, .converged = true};
+    for (BandAlbedo& band : mean.bands) band = {0, 0, 0.0, 0.0, 0};
+    for (const Radians rotation : rotations) {
+        const Albedo one = meanAlbedo(atRotation(sample, rotation));
+        mean.evaluations += one.evaluations;
+        for (std::size_t b = 0; b < 3; ++b) {
+            BandAlbedo& band = mean.bands[b];
+            band.value += share * one.bands[b].value;
+            band.errorBound += share * one.bands[b].errorBound;
+            *band.uRandom = std::hypot(*band.uRandom, share * one.bands[b].uRandom.value_or(kNan));
+            *band.uSystematic += share * one.bands[b].uSystematic.value_or(kNan);
+            band.missing += share * one.bands[b].missing;
+        }
+    }
+    return mean;
+}
+
 }  // namespace
 
 double projectedSolidAngle(std::size_t cell) {
@@ -115,6 +136,8 @@ Albedo directionalAlbedo(const LedTable& led) {
 }
 
 Albedo meanAlbedo(const SampleSet& sample) {
+    const std::vector<Radians> rotations = rotationsOf(sample);
+    if (rotations.size() > 1) return meanOverRotations(sample, rotations);
     std::vector<Albedo> leds;
     std::vector<double> at;
     Albedo mean;

@@ -25,7 +25,7 @@ namespace gonio::proc {
 /// a linear in sin^2(theta_i) between LEDs: LEDs are independent in what is random. Incidences
 /// beyond the first and last LED count as missing. The error bound is of that line between LEDs,
 /// twice what their second differences say; NaN below three LEDs and where two share an incidence,
-/// where none can be had.
+/// where none can be had. Of several rotations, the mean of each one's.
 [[nodiscard]] Albedo meanAlbedo(const SampleSet& sample);
 
 }  // namespace gonio::proc

@@ -25,9 +25,9 @@
 
 #include "proc/core/result.h"
 #include "proc/core/scatterer.h"
-#include "proc/fit/budget_shares.h"
 #include "proc/formats/points_csv.h"
 #include "proc/models/kernel.h"
+#include "proc/table/budget_shares.h"
 #include "proc/table/sample_set.h"
 #include "proc/table/specular_table.h"
 
@@ -55,7 +55,7 @@ struct FitRow {
 struct BrdfData {
     std::vector<WeightedNode> nodes;
     std::vector<FitRow> rows;
-    std::vector<Radians> incidences;  ///< of the groups, ascending
+    std::vector<Radians> incidences;  ///< of the groups, ascending (of one rotation)
     BudgetShares shared;              ///< by group: errors shared by its values; empty: none
     BandCount bands = BandCount::Three;
     bool uKnown = true;
@@ -86,6 +86,7 @@ struct DataOptions {
     double relativeFloor = 0;       ///< of u_random, added in quadrature, relative to f
 };
 
+/// Pairs in the sample's own frame; a group for each LED, of each rotation.
 [[nodiscard]] BrdfData fitDataOf(const SampleSet& set, const DataOptions& options = {});
 /// The first plane of the first rotation; a Usage error for a table in XYZ or of transmission.
 [[nodiscard]] Result<BrdfData> fitDataOf(const SpecularTable& table,

@@ -18,8 +18,8 @@ std::size_t nodesPerSide(Radians fromMirror) {
 }
 
 /// Weights by solid angle, summing to 1.
-std::vector<WeightedNode> nodesOf(const Direction& wi, std::size_t cell, std::size_t perSide) {
-    const auto pairTo = [&](const Direction& wo) { return pairOf<double>({.in = wi, .out = wo}); };
+std::vector<WeightedNode> nodesOf(const LedTable& led, std::size_t cell, std::size_t perSide) {
+    const auto pairTo = [&](const Direction& wo) { return pairOf<double>(pairInSample(led, wo)); };
     if (perSide == 1) return {{pairTo(CellGrid::centre(cell)), 1}};
     const CellBounds bounds = CellGrid::bounds(cell);
     const std::vector<QuadratureNode> rule = gaussLegendre(perSide);
@@ -40,18 +40,16 @@ std::vector<WeightedNode> nodesOf(const Direction& wi, std::size_t cell, std::si
     return nodes;
 }
 
-FitRow& addCell(DataMaker& maker, const Direction& wi, std::size_t cell) {
+FitRow& addCell(DataMaker& maker, const LedTable& led, std::size_t cell) {
     const Direction centre = CellGrid::centre(cell);
-    const Radians away = angleBetween({.in = mirrorOf(wi), .out = centre});
-    FitRow& row = maker.add(nodesOf(wi, cell, nodesPerSide(away)), centre.z());
+    const Direction mirror = Direction::fromSpherical(led.incidence, Radians(kPi));
+    const Radians away = angleBetween({.in = mirror, .out = centre});
+    FitRow& row = maker.add(nodesOf(led, cell, nodesPerSide(away)), centre.z());
     row.cell = static_cast<std::int32_t>(cell);
     row.patch = static_cast<std::uint32_t>(patchOf(cell));
     row.solidAngle = CellGrid::solidAngle(cell);
     return row;
 }
-
-/// The light at an incidence; the isotropic sample's is at phi = 0.
-Direction lightAt(Radians incidence) { return Direction::fromSpherical(incidence, Radians(0)); }
 
 }  // namespace
 
@@ -62,14 +60,13 @@ BrdfData fitDataOf(const SampleSet& set, const DataOptions& options) {
         const LedTable& led = set.leds[l];
         const auto group = static_cast<std::uint16_t>(maker.data().incidences.size());
         maker.data().incidences.push_back(led.incidence);
-        const Direction wi = lightAt(led.incidence);
         for (std::size_t cell = 0; cell < CellGrid::count(); ++cell) {
             const auto usable = [&](const CellSamples& cells) { return cells.usable(cell); };
             if (std::none_of(led.bands.begin(), led.bands.end(), usable)) {
                 maker.leaveOut();
                 continue;
             }
-            FitRow& row = addCell(maker, wi, cell);
+            FitRow& row = addCell(maker, led, cell);
             row.group = group;
             for (std::size_t b = 0; b < 3; ++b) {
                 const CellSamples& cells = led.bands[b];

@@ -6,7 +6,7 @@
 
 #include "proc/core/number_text.h"
 #include "proc/core/parallel.h"
-#include "proc/fit/chi_square.h"
+#include "proc/solve/chi_square.h"
 
 namespace gonio::proc {
 namespace {

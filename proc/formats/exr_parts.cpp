@@ -134,9 +134,17 @@ std::string encode(std::span<const ExrPart> parts) {
     return out.take();
 }
 
+void refuseAbove(std::size_t limit, std::size_t bytes) {
+    if (bytes <= limit) return;
+    throw std::runtime_error(std::to_string(bytes) + " bytes of pixels, at most " +
+                             std::to_string(limit) + " are read");
+}
+
 /// The pixels of all parts may not be more than deflate can hold in the file (1032 : 1), whatever
 /// the headers promise: known before the library or we make room for any.
-void checkPromise(const Imf::MultiPartInputFile& file, std::size_t fileBytes, std::size_t limit) {
+void checkPromise(const Imf::MultiPartInputFile& file,
+                  std::size_t fileBytes,
+                  const ExrLimits& limits) {
     constexpr std::size_t kMostRatio = 1032;
     std::size_t promised = 0;
     for (int i = 0; i < file.parts(); ++i) {
@@ -146,14 +154,14 @@ void checkPromise(const Imf::MultiPartInputFile& file, std::size_t fileBytes, st
             throw std::runtime_error("a picture does not start at 0,0");
         }
         const Size size{window.max.x + 1, window.max.y + 1};
+        std::size_t ofPart = 0;
         for (auto it = header.channels().begin(); it != header.channels().end(); ++it) {
-            promised += size.pixels() * sizeof(float);
+            ofPart += size.pixels() * sizeof(float);
         }
+        refuseAbove(limits.bytesOfAPart, ofPart);
+        promised += ofPart;
     }
-    if (promised > limit) {
-        throw std::runtime_error(std::to_string(promised) + " bytes of pixels, at most " +
-                                 std::to_string(limit) + " are read");
-    }
+    refuseAbove(limits.bytes, promised);
     if (promised / kMostRatio > fileBytes) {
         throw std::runtime_error("more pixels than the file can hold");
     }
@@ -183,10 +191,10 @@ ExrPart emptyPart(const Imf::Header& header) {
     return part;
 }
 
-std::vector<ExrPart> decode(std::string_view bytes, std::size_t limit) {
+std::vector<ExrPart> decode(std::string_view bytes, const ExrLimits& limits) {
     MemoryIn in(bytes);
     Imf::MultiPartInputFile file(in, 0, false);
-    checkPromise(file, bytes.size(), limit);
+    checkPromise(file, bytes.size(), limits);
     std::vector<ExrPart> parts;
     for (int i = 0; i < file.parts(); ++i) {
         Imf::InputPart input(file, i);
@@ -230,7 +238,7 @@ Result<std::string> encodeExr(std::span<const ExrPart> parts) {
 Result<std::vector<ExrPart>> decodeExr(std::string_view bytes, ExrLimits limits) {
     if (auto walked = walkExrHeaders(bytes, limits); !walked) return walked.error();
     try {
-        return decode(bytes, limits.bytes);
+        return decode(bytes, limits);
     } catch (const std::exception& thrown) {
         return failed("damaged: " + reason(thrown));
     }

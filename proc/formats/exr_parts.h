@@ -32,6 +32,7 @@ struct ExrLimits {
     Size largest;
     std::size_t parts = 0;
     std::size_t bytes = std::numeric_limits<std::size_t>::max();  ///< of all channels, decoded
+    std::size_t bytesOfAPart = std::numeric_limits<std::size_t>::max();  ///< of one part's
 };
 
 /// At least one part; names differ; every channel has size.pixels() values.

@@ -11,13 +11,14 @@
 #include "proc/formats/file_degrees.h"
 #include "proc/formats/shown.h"
 #include "proc/optics/cell_grid.h"
+#include "proc/table/rotations.h"
 
 namespace gonio::proc {
 namespace {
 
 constexpr Size kPicture{360, CellGrid::kRows};
-constexpr std::size_t kMostLeds = 8;                        // that a rig can have
-constexpr std::size_t kMostBytes = std::size_t{32} << 20U;  // 24 parts of 6 channels are 19 MB
+constexpr std::size_t kMostBytes = std::size_t{1}
+                                   << 20U;  // of a part, whose 6 channels take 0.8 MB
 
 /// The cell that a pixel repeats: the one that holds the middle of its column.
 std::size_t cellOf(int x, int y) {
@@ -76,6 +77,8 @@ std::map<std::string, std::string> textOf(const SampleInfo& info) {
     return text;
 }
 
+constexpr const char* kRotation = "gonio.rotation_deg";
+
 std::vector<float> spread(const std::vector<double>& cells) {
     std::vector<float> pixels;
     pixels.reserve(kPicture.pixels());
@@ -107,6 +110,9 @@ ExrPart partOf(const LedTable& led, Band band) {
     part.text = {{"gonio.incidence_deg", shortest(fileDegrees(led.incidence))},
                  {"gonio.band", std::string(letter(band))},
                  {"gonio.wavelength_nm", shortest(nanometres(band))}};
+    if (const double turned = fileDegrees(led.rotation); turned != 0) {
+        part.text[kRotation] = shortest(turned);
+    }
     part.floats = {{"f", spread(cells.f)},
                    {"u_random", spread(cells.uRandom)},
                    {"u_systematic", spread(cells.uSystematic)},
@@ -225,8 +231,22 @@ private:
         if (!first && incidence != into.incidence) {
             return fail("part " + part.name + ": another incidence than the LED's first band");
         }
+        const auto turned = parseDouble(textAt(part, kRotation).value_or("0"));
+        if (!turned || *turned < 0 || *turned >= 360) {
+            return fail("part " + part.name + ": gonio.rotation_deg is not in [0, 360)");
+        }
+        const Radians rotation = rotationOf(*turned);
+        if (!first && rotation != into.rotation) {
+            return fail("part " + part.name + ": another rotation than the LED's first band");
+        }
+        const auto nm = parseDouble(textAt(part, "gonio.wavelength_nm").value_or("0"));
+        if (!nm || (*nm != 0 && *nm != nanometres(band))) {
+            return fail("part " + part.name + ": gonio.wavelength_nm is not " +
+                        shortest(nanometres(band)) + ", which the band is");
+        }
         if (!wholePicture(part)) return false;
         into.incidence = incidence;
+        into.rotation = rotation;
         CellSamples& cells = into.bands[index(band)];
         cells.f = gathered(part.floats.at("f"));
         cells.uRandom = gathered(part.floats.at("u_random"));
@@ -269,6 +289,11 @@ private:
 }  // namespace
 
 Result<std::string> encodeGonio(const SampleSet& set) {
+    if (set.leds.size() > kMostTables) {
+        return Error{ErrorKind::Internal,
+                     "gonio: " + std::to_string(set.leds.size()) + " tables, at most " +
+                         std::to_string(kMostTables) + " fit into a file"};
+    }
     std::vector<ExrPart> parts;
     for (std::size_t led = 0; led < set.leds.size(); ++led) {
         const std::size_t before = parts.size();
@@ -298,8 +323,8 @@ Result<std::string> encodeGonio(const SampleSet& set) {
 }
 
 Result<SampleSet> decodeGonio(std::string_view bytes, std::string_view name) {
-    const auto parts =
-        decodeExr(bytes, {.largest = kPicture, .parts = 3 * kMostLeds, .bytes = kMostBytes});
+    const auto parts = decodeExr(
+        bytes, {.largest = kPicture, .parts = 3 * kMostTables, .bytesOfAPart = kMostBytes});
     if (!parts) return parts.error().in("gonio: " + std::string(name));
     return Decoder(name).read(*parts);
 }

@@ -11,6 +11,7 @@
 #include "proc/formats/file_degrees.h"
 #include "proc/formats/shown.h"
 #include "proc/optics/cell_grid.h"
+#include "proc/table/rotations.h"
 
 namespace gonio::proc {
 namespace {
@@ -286,9 +287,11 @@ std::string sampleCsv(const SampleSet& set) {
     }
     text += "\n";
     for (const LedTable& led : set.leds) {
-        const std::string incidence = shortest(fileDegrees(led.incidence)) + ",0,";
+        const std::string incidence = shortest(fileDegrees(led.incidence)) + "," +
+                                      shortest(fileDegrees(rotationOf(-led.rotation.degrees()))) +
+                                      ",";
         for (std::size_t cell = 0; cell < CellGrid::count(); ++cell) {
-            const Direction wo = CellGrid::centre(cell);
+            const Direction wo = pairInSample(led, CellGrid::centre(cell)).out;
             text += incidence + shortest(fileDegrees(wo.theta())) + "," +
                     shortest(fileDegrees(wo.phi()));
             std::array<Measured<double>, 3> at;

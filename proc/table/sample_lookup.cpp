@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "proc/core/coordinates.h"
 #include "proc/optics/cell_blend.h"
 #include "proc/table/axis.h"
+#include "proc/table/rotations.h"
 
 namespace gonio::proc {
 namespace {
@@ -19,34 +21,6 @@ struct Share {
     std::size_t cell = 0;
     double weight = 0;
 };
-
-/// The cells that an answer is made of; weights above 0, their sum 1.
-class Blend {
-public:
-    void add(Share share) {
-        if (share.weight > 0) shares_[count_++] = share;
-    }
-    [[nodiscard]] std::span<const Share> shares() const { return {shares_.data(), count_}; }
-    [[nodiscard]] bool oneCell() const { return count_ == 1; }
-
-private:
-    std::array<Share, 8> shares_{};  // two LEDs x two rows x two sectors
-    std::size_t count_ = 0;
-};
-
-/// One LED and what it weighs in the answer.
-struct LedShare {
-    std::size_t led = 0;
-    double weight = 1;
-};
-
-/// wo is above the horizon.
-void addCells(Blend& blend, LedShare share, const Direction& wo) {
-    const CellBlend around(wo);
-    for (const CellWeight& one : around.cells()) {
-        blend.add({share.led, one.cell, share.weight * one.weight});
-    }
-}
 
 /// Adds one cell's part to the answer's band. u_random is summed in squares.
 void accumulate(Answer& answer, Band band, const CellSamples& cells, const Share& share) {
@@ -62,26 +36,6 @@ void accumulate(Answer& answer, Band band, const CellSamples& cells, const Share
     answer.flags = answer.flags | cells.flags[share.cell];
 }
 
-Answer blended(const SampleSet& set, const Blend& blend) {
-    Answer answer;
-    answer.uRandom = LedBands{};
-    answer.uSystematic = LedBands{};
-    answer.source = blend.oneCell() ? Source::Measured : Source::Interpolated;
-    bool any = false;
-    for (Band band : kBands) {
-        for (const Share& share : blend.shares()) {
-            accumulate(answer, band, set.leds[share.led].bands[index(band)], share);
-        }
-        (*answer.uRandom)[band] = std::sqrt((*answer.uRandom)[band]);
-        const bool missing = std::isnan(answer.f[band]);
-        if (missing) (*answer.uRandom)[band] = (*answer.uSystematic)[band] = kNan;
-        any = any || !missing;
-    }
-    if (!blend.oneCell() || !any) answer.flags.clear(Flag::Measured);
-    if (!blend.oneCell() && any) answer.flags.set(Flag::Interpolated);
-    return any ? answer : Answer::none(answer.flags, answer.source);
-}
-
 /// The LED whose own incidence this is.
 std::optional<std::size_t> ledAt(std::span<const double> incidenceDeg, double atDeg) {
     std::optional<std::size_t> nearest;
@@ -95,34 +49,98 @@ std::optional<std::size_t> ledAt(std::span<const double> incidenceDeg, double at
 
 }  // namespace
 
+/// The cells that an answer is made of; weights above 0, their sum 1.
+class SampleLookup::Blend {
+public:
+    void add(Share share) {
+        if (share.weight > 0) shares_[count_++] = share;
+    }
+    /// What an LED sees around wo, which is above the horizon.
+    void addCells(std::size_t led, const Direction& wo, double weight) {
+        const CellBlend around(wo);
+        for (const CellWeight& one : around.cells()) add({led, one.cell, weight * one.weight});
+    }
+    [[nodiscard]] std::span<const Share> shares() const { return {shares_.data(), count_}; }
+    [[nodiscard]] bool oneCell() const { return count_ == 1; }
+
+private:
+    std::array<Share, 16> shares_{};  // two rotations x two LEDs x two rows x two sectors
+    std::size_t count_ = 0;
+};
+
 SampleLookup::SampleLookup(SampleSet set) : set_(std::move(set)) {
-    std::sort(set_.leds.begin(), set_.leds.end(), [](const LedTable& a, const LedTable& b) {
-        return a.incidence < b.incidence;
-    });
-    for (const LedTable& led : set_.leds) incidenceDeg_.push_back(led.incidence.degrees());
+    sortTables(set_);
+    for (std::size_t i = 0; i < set_.leds.size(); ++i) {
+        const LedTable& led = set_.leds[i];
+        if (turns_.empty() || !sameRotation(turns_.back().rotation, led.rotation)) {
+            turns_.push_back({.rotation = led.rotation, .first = i, .incidenceDeg = {}});
+            rotationDeg_.push_back(led.rotation.degrees());
+        }
+        turns_.back().incidenceDeg.push_back(led.incidence.degrees());
+    }
+}
+
+Answer SampleLookup::blended(const Blend& blend) const {
+    Answer answer;
+    answer.uRandom = LedBands{};
+    answer.uSystematic = LedBands{};
+    answer.source = blend.oneCell() ? Source::Measured : Source::Interpolated;
+    bool any = false;
+    for (Band band : kBands) {
+        for (const Share& share : blend.shares()) {
+            accumulate(answer, band, set_.leds[share.led].bands[index(band)], share);
+        }
+        (*answer.uRandom)[band] = std::sqrt((*answer.uRandom)[band]);
+        const bool missing = std::isnan(answer.f[band]);
+        if (missing) (*answer.uRandom)[band] = (*answer.uSystematic)[band] = kNan;
+        any = any || !missing;
+    }
+    if (!blend.oneCell() || !any) answer.flags.clear(Flag::Measured);
+    if (!blend.oneCell() && any) answer.flags.set(Flag::Interpolated);
+    return any ? answer : Answer::none(answer.flags, answer.source);
+}
+
+/// False: what this rotation measured does not tell.
+bool SampleLookup::addTurn(Blend& blend,
+                           const Turn& turn,
+                           const LightView& pair,
+                           double weight) const {
+    const double atDeg = pair.in.theta().degrees();
+    if (const auto led = ledAt(turn.incidenceDeg, atDeg)) {
+        // Under an LED at the normal the view alone says how the sample lay.
+        const bool normal = turns_.size() > 1 && turn.incidenceDeg[*led] < kAtLedDeg;
+        const Radians turned = normal ? turn.rotation : -pair.in.phi();
+        blend.addCells(turn.first + *led, pair.out.turned(turned), weight);
+        return true;
+    }
+    const auto place = placeOn(turn.incidenceDeg, atDeg);
+    if (!place) return false;
+    const SpecularRelative at = toSpecularRelative(pair);
+    for (const auto& [led, share] :
+         {std::pair{place->low, 1 - place->t}, std::pair{place->high, place->t}}) {
+        const std::size_t table = turn.first + led;
+        const Direction wi = Direction::fromSpherical(set_.leds[table].incidence, Radians(0));
+        const Direction wo = fromSpecularRelative(wi, at);
+        if (!wo.aboveHorizon()) return false;
+        blend.addCells(table, wo, weight * share);
+    }
+    return true;
 }
 
 Answer SampleLookup::answer(const LightView& pair) const {
     if (!pair.in.aboveHorizon() || !pair.out.aboveHorizon()) {
         return Answer::none({Flag::BelowHorizon}, Source::Interpolated);
     }
-    const double atDeg = pair.in.theta().degrees();
-    Blend blend;
-    if (const auto led = ledAt(incidenceDeg_, atDeg)) {
-        addCells(blend, {*led, 1}, pair.out.turned(-pair.in.phi()));
-        return blended(set_, blend);
-    }
-    const auto place = placeOn(incidenceDeg_, atDeg);
+    if (turns_.empty()) return Answer::none({}, Source::Interpolated);
+    const bool normal = pair.in.theta() < 1e-6_deg;
+    const auto place = turns_.size() == 1 || normal
+                           ? AxisPlace{}
+                           : placeOnCircle(rotationDeg_, -pair.in.phi().degrees());
     if (!place) return Answer::none({}, Source::Interpolated);
-    const SpecularRelative at = toSpecularRelative(pair);
-    for (const LedShare share :
-         {LedShare{place->low, 1 - place->t}, LedShare{place->high, place->t}}) {
-        const Direction wi = Direction::fromSpherical(set_.leds[share.led].incidence, Radians(0));
-        const Direction wo = fromSpecularRelative(wi, at);
-        if (!wo.aboveHorizon()) return Answer::none({}, Source::Interpolated);
-        addCells(blend, share, wo);
-    }
-    return blended(set_, blend);
+    Blend blend;
+    const bool told = addTurn(blend, turns_[place->low], pair, 1 - place->t) &&
+                      (place->atNode() || addTurn(blend, turns_[place->high], pair, place->t));
+    return told ? blended(blend) : Answer::none({}, Source::Interpolated);
 }
 
 }  // namespace gonio::proc

@@ -11,6 +11,7 @@
 
 #include "proc/calibrate/cell_samples.h"
 #include "proc/core/bands.h"
+#include "proc/core/direction.h"
 #include "proc/core/units.h"
 
 namespace gonio::proc {
@@ -39,13 +40,25 @@ struct SampleInfo {
     bool operator==(const SampleInfo&) const = default;
 };
 
-/// What one LED measured. The light stands at phi = 0.
+/// What one LED measured. The cells are in the rig's frame, in which the light stands at phi = 0.
 struct LedTable {
     Radians incidence;
+    Radians rotation{};  ///< of the sample about its normal, in [0, 2 pi): rotations.h
     std::array<CellSamples, 3> bands;  ///< R, G, B; an empty one was not measured
 };
 
-/// LEDs by ascending incidence.
+/// The light in the sample's own frame: rotation r turns the sample by +r under a fixed light, so
+/// that there the light stands at phi = -r.
+[[nodiscard]] inline Direction lightOf(const LedTable& led) {
+    return Direction::fromSpherical(led.incidence, -led.rotation);
+}
+/// The pair of a direction of the rig's frame, in the sample's own; wo is as it is at rotation 0.
+[[nodiscard]] inline LightView pairInSample(const LedTable& led, const Direction& wo) {
+    const bool turned = led.rotation != Radians();
+    return {.in = lightOf(led), .out = turned ? wo.turned(-led.rotation) : wo};
+}
+
+/// LEDs by ascending rotation, and of each rotation by ascending incidence.
 struct SampleSet {
     SampleInfo info;
     std::vector<LedTable> leds;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "proc/optics/cell_grid.h"
+#include "proc/table/rotations.h"
 
 namespace gonio::proc {
 namespace {
@@ -29,8 +30,7 @@ ScatteredSample sampleAt(const LedTable& led, const Bands& bands, std::size_t ce
         uSystematic[band] = value.uSystematic;
         flags = flags | value.flags;
     }
-    return {.pair = {.in = Direction::fromSpherical(led.incidence, Radians(0)),
-                     .out = CellGrid::centre(cell)},
+    return {.pair = pairInSample(led, CellGrid::centre(cell)),
             .f = spread(bands, f),
             .uRandom = spread(bands, uRandom),
             .uSystematic = spread(bands, uSystematic),
@@ -55,7 +55,7 @@ PairSymmetry symmetryOf(const SpecularTable& table) {
 
 Result<Scattered> scatteredOf(const SampleSet& sample,
                               std::optional<Band> only,
-                              PairSymmetry symmetry) {
+                              std::optional<PairSymmetry> symmetry) {
     const Bands bands = only ? Bands{*only} : Bands(kBands.begin(), kBands.end());
     std::vector<ScatteredSample> samples;
     std::size_t leftOut = 0;
@@ -68,8 +68,12 @@ Result<Scattered> scatteredOf(const SampleSet& sample,
             }
         }
     }
+    const bool turned = rotationsOf(sample).size() > 1;
+    const PairSymmetry least = turned ? PairSymmetry::None : PairSymmetry::Isotropic;
     return scatteredFrom(
-        samples, ScatteredSet(symmetry, only ? BandCount::One : BandCount::Three), leftOut);
+        samples,
+        ScatteredSet(symmetry.value_or(least), only ? BandCount::One : BandCount::Three),
+        leftOut);
 }
 
 Result<Scattered> scatteredOf(const SpecularTable& table) {

@@ -15,12 +15,12 @@ struct Scattered {
 };
 
 /// The cells that are usable (CellSamples) in all three bands, or in `only` one band: then f is the
-/// same in the three, BandCount::One. The light stands at phi = 0, the pair's wo at the cell's
-/// centre; flags are those of all bands together. The rig sees isotropic samples only, so that
-/// this is the least symmetry that makes sense.
+/// same in the three, BandCount::One. Pairs are in the sample's own frame (pairInSample), wo at the
+/// cell's centre; flags are those of all bands together. Unless said, the symmetry is none of
+/// several rotations, and isotropic of one, which tells of no other.
 [[nodiscard]] Result<Scattered> scatteredOf(const SampleSet& sample,
                                             std::optional<Band> only = {},
-                                            PairSymmetry symmetry = PairSymmetry::Isotropic);
+                                            std::optional<PairSymmetry> symmetry = {});
 
 /// The nodes with data, each direction once; BandCount::One. Symmetry as the table says: of several
 /// rotations none, of one rotation isotropic, of a plane-symmetrical table also mirrored. A Usage

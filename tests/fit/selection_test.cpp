@@ -8,8 +8,8 @@
 #include <numeric>
 #include <sstream>
 
-#include "proc/fit/chi_square.h"
 #include "proc/models/spec.h"
+#include "proc/solve/chi_square.h"
 #include "tests/fit/simulated.h"
 #include "tests/support/data_file.h"
 

@@ -11,6 +11,7 @@
 #include "proc/formats/exr_parts.h"
 #include "proc/formats/file_bytes.h"
 #include "proc/optics/cell_grid.h"
+#include "proc/table/rotations.h"
 #include "tests/formats/refusal.h"
 #include "tests/formats/small_files.h"
 #include "tests/support/temp_folder.h"
@@ -132,6 +133,25 @@ TEST(GonioFile, ReadsBackWholeDegreesToTheBit) {
         set.leds[0].incidence = Radians::fromDegrees(degrees);
         EXPECT_EQ(decoded(encoded(set)).leds[0].incidence, Radians::fromDegrees(degrees));
     }
+}
+
+/// Files of before there were rotations have none; 0 is not written, so that they stay as they are.
+TEST(GonioFile, KeepsTheRotationOfEachTableAndRefusesWhatIsNone) {
+    SampleSet set = smallSample();
+    EXPECT_FALSE(decodeExr(encoded(set), kLimits)->front().text.contains("gonio.rotation_deg"));
+    EXPECT_EQ(decoded(encoded(set)).leds[0].rotation, Radians(0));
+    set.leds.push_back(set.leds.front());
+    set.leds[1].rotation = rotationOf(-45);
+    EXPECT_EQ(decoded(encoded(set)).leds[1].rotation, rotationOf(315));
+    EXPECT_EQ(decoded(encoded(set)).leds[0].rotation, Radians(0));
+    for (const char* none : {"-45", "360", "north", "nan"}) {
+        EXPECT_TRUE(refuses(withText("gonio.rotation_deg", none), {"led0.g", "rotation_deg"}))
+            << none;
+    }
+    EXPECT_TRUE(
+        refuses(withText("gonio.wavelength_nm", "530"), {"led0.g", "wavelength_nm", "525"}));
+    set.leds.resize(kMostTables + 1, set.leds[1]);
+    EXPECT_FALSE(encodeGonio(set));
 }
 
 TEST(GonioFile, KeepsEverythingAboutTheSample) {

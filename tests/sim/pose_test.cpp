@@ -41,6 +41,18 @@ TEST(Pose, ASpotsWedgeAddsToTheSurfaces) {
     EXPECT_NEAR(angleBetween({both.seenFromSurface(d), one.seenFromSurface(d)}).value(), 0, 1e-15);
 }
 
+/// Turned by +r under a fixed light, the surface sees the light at azimuth -r.
+TEST(Pose, ATurnedSurfaceSeesTheLightTurnedBack) {
+    const Pose pose({}, {}, 30_deg);
+    const Direction light = pose.seenFromSurface(Direction::fromSpherical(40_deg, Radians(0)));
+    EXPECT_NEAR(light.theta().degrees(), 40, 1e-12);
+    EXPECT_NEAR(light.phi().degrees(), 330, 1e-12);
+    // The stage tilts with what lies on it: the normal is the wedge's, however it is turned.
+    const Direction normal = Pose({.aboutX = 5_deg}, {}, 70_deg)
+                                 .seenFromSurface(Direction::fromSpherical(5_deg, -90_deg));
+    EXPECT_NEAR(normal.theta().degrees(), 0, 1e-6);
+}
+
 TEST(Pose, WavesHaveMeanZeroAndTheirSizeAsRootMeanSquare) {
     for (std::uint64_t seed = 1; seed < 20; ++seed) {
         double x = 0, y = 0, squares = 0;

@@ -1,4 +1,4 @@
-#include "proc/fit/chi_square.h"
+#include "proc/solve/chi_square.h"
 
 #include <gtest/gtest.h>
 

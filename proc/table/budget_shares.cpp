@@ -1,4 +1,4 @@
-#include "proc/fit/budget_shares.h"
+#include "proc/table/budget_shares.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -33,6 +33,8 @@ BudgetShare shareOf(const Json& components) {
             share.patch = share.cell = std::hypot(share.patch, std::sqrt(0.5) * relative);
         }
         if (correlation == "per state") share.state = std::hypot(share.state, relative);
+        const bool tilt = textAt(one, "name") == "tilt of the sample";
+        if (correlation == "common" && !tilt) share.common = std::hypot(share.common, relative);
     }
     return share;
 }

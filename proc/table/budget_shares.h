@@ -20,6 +20,9 @@ struct BudgetShare {
     double cell = 0;   ///< of each cell alone
     double patch = 0;  ///< shared by the cells of one patch under one LED, in one band
     double state = 0;  ///< shared by one LED and band (the LED's drift)
+    /// Shared by all values that were calibrated alike: the certificates. Not the sample's tilt,
+    /// which moves f up on one side of a lobe and down on the other.
+    double common = 0;
 };
 /// By LED, then band.
 using BudgetShares = std::vector<std::array<BudgetShare, 3>>;

@@ -1,0 +1,30 @@
+#pragma once
+// Rotations of a sample on the rig's stage, and the parts of a set that were measured at each.
+// Rotation r turns the sample by +r about its normal (counter-clockwise seen from above) under a
+// fixed light. Two rotations within 0.01 degrees of each other, over the full turn, are the same.
+
+#include <vector>
+
+#include "proc/table/sample_set.h"
+
+namespace gonio::proc {
+
+/// In [0, 2 pi), from degrees of a file or a person: -90 and 270 are the same to the bit, 360 is 0.
+/// `degrees` is finite; what is below 1e-9 degrees is rounded off.
+[[nodiscard]] Radians rotationOf(double degrees);
+
+[[nodiscard]] bool sameRotation(Radians a, Radians b);
+
+/// Of the LEDs, ascending, each once.
+[[nodiscard]] std::vector<Radians> rotationsOf(const SampleSet& set);
+
+/// The set's tables of one rotation; the information is the whole set's.
+[[nodiscard]] SampleSet atRotation(const SampleSet& set, Radians rotation);
+
+/// Gives all tables of a set this rotation.
+void turnTo(SampleSet& set, Radians rotation);
+
+/// Tables by ascending rotation, then incidence.
+void sortTables(SampleSet& set);
+
+}  // namespace gonio::proc
