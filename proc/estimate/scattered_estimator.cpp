@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "proc/core/median.h"
 #include "proc/estimate/carrier_fit.h"
@@ -21,6 +22,7 @@ using Process = ScatteredEstimator::Process;
 /// Of the median |f|, added to f and the model before their ratio is taken: what is far darker is
 /// interpolated as a difference.
 constexpr double kFloorShare = 0.1;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// But for a turn of both about the normal.
 bool samePair(const LightView& a, const LightView& b) {
@@ -141,6 +143,7 @@ private:
             most_ = result.logLikelihood;
             tried.noise = noise;
             tried.variance = result.variance;
+            tried.learned = true;
             best_ = tried;
         }
     }
@@ -230,6 +233,13 @@ Kriged krige(const std::vector<KrigingSample>& samples, const Near& near, double
             std::max(0.0, 1 - near.alike.dot(factor.solve(near.alike)))};
 }
 
+/// Empty where nothing is known in any band.
+std::optional<LedBands> ifKnown(const LedBands& u) {
+    const bool known =
+        std::any_of(u.value.begin(), u.value.end(), [](double v) { return !std::isnan(v); });
+    return known ? std::optional(u) : std::nullopt;
+}
+
 }  // namespace
 
 Result<std::unique_ptr<const ScatteredEstimator>> ScatteredEstimator::over(
@@ -244,6 +254,7 @@ Result<std::unique_ptr<const ScatteredEstimator>> ScatteredEstimator::over(
     if (!carrier) return carrier.error();
     std::unique_ptr<ScatteredEstimator> made(new ScatteredEstimator(*carrier, data.bands));
     made->neighbours_ = std::max<std::size_t>(1, options.neighbours);
+    made->uKnown_ = data.uKnown;
     const std::vector<LightView> pairs = pairsOf(data);
     for (std::size_t b = 0; b < data.bandsUsed(); ++b)
         made->bandsOf_[b] = made->learn(data, pairs, b);
@@ -268,8 +279,8 @@ ScatteredEstimator::OneBand ScatteredEstimator::learn(const BrdfData& data,
                                .place = {},
                                .ratio = (row.f[band] + one.floor) / (model + one.floor) - 1,
                                .f = row.f[band],
-                               .uRandom = row.uRandom[band],
-                               .uSystematic = row.uSystematic[band]});
+                               .uRandom = data.uKnown ? row.uRandom[band] : kNan,
+                               .uSystematic = data.uKnown ? row.uSystematic[band] : kNan});
     }
     one.process = learned(one.samples);
     for (KrigingSample& sample : one.samples) sample.place = krigingPlace(one.process, sample.pair);
@@ -291,12 +302,13 @@ ScatteredEstimator::BandAnswer ScatteredEstimator::bandAnswer(const LightView& p
     const Kriged kriged = krige(one.samples, near, one.process.noise);
     const double model = carrier_.at(pair).value[band] + one.floor;
     const double f = (1 + kriged.ratio) * model - one.floor;
-    const double own = model * std::sqrt(one.process.variance * kriged.unknown);
+    const double own =
+        one.process.learned ? model * std::sqrt(one.process.variance * kriged.unknown) : kNan;
     const double common = one.commonRelative * std::abs(f);
     constexpr double kMostUnknown = 0.5;
     return {f,
-            0,
-            std::hypot(own, common),
+            uKnown_ ? 0 : kNan,
+            std::sqrt(own * own + common * common),
             kriged.unknown > kMostUnknown ? Source::Model : Source::Interpolated};
 }
 
@@ -318,6 +330,8 @@ Answer ScatteredEstimator::answer(const LightView& pair) const {
             answer.source = one.source;
         }
     }
+    answer.uRandom = ifKnown(*answer.uRandom);
+    answer.uSystematic = ifKnown(*answer.uSystematic);
     switch (answer.source) {
         case Source::Measured: answer.flags.set(Flag::Measured); break;
         case Source::Model: answer.flags.set(Flag::Extrapolated).set(Flag::Model); break;

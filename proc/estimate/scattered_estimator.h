@@ -10,10 +10,13 @@
 // at most 300 samples is predicted best from the others (leave-one-out likelihood [Rasmussen2006,
 // ch. 5]).
 //
-// At a sample itself: as it was given, source measured. Elsewhere: interpolated; u_systematic is
-// the process's own standard deviation (its noise is found from the data) and the samples' common
-// one. Beyond what was sampled the ratio returns to 1 and its deviation to that of all ratios:
-// source model, flag extrapolated, from where it knows less than half of their variance.
+// At a sample itself: as it was given, source measured; where the data say nothing of their
+// uncertainty, neither does the answer. Elsewhere: interpolated; u_systematic is the process's own
+// standard deviation (its noise is found from the data) and the samples' common one; none where the
+// process could not be learned, as of values that the model meets exactly. u_random is 0, or none
+// where the data have none. Beyond what was sampled the ratio returns to 1 and its deviation to
+// that of all ratios: source model, flag extrapolated, from where it knows less than half of their
+// variance.
 
 #include <Eigen/Core>
 #include <array>
@@ -68,8 +71,8 @@ public:
         bool fromMirror = false;
         double noise = 0.1;      ///< variance, relative to the process's
         double variance = 1e-2;  ///< of the ratio
+        bool learned = false;    ///< else all of this is assumed
     };
-    [[nodiscard]] const Process& process(Band band) const { return bandsOf_[index(band)].process; }
 
 private:
     struct OneBand {
@@ -78,7 +81,7 @@ private:
         double floor = 0;           ///< 1/sr, beside f and the model in their ratio
         double commonRelative = 0;  ///< systematic uncertainty
     };
-    /// NaN where the band was not sampled.
+    /// NaN where the band was not sampled, and where nothing is known of an uncertainty.
     struct BandAnswer {
         double f = std::numeric_limits<double>::quiet_NaN();
         double uRandom = std::numeric_limits<double>::quiet_NaN();
@@ -95,6 +98,7 @@ private:
 
     Carrier carrier_;
     BandCount bands_;
+    bool uKnown_ = true;  ///< of the samples
     std::array<OneBand, 3> bandsOf_;
     std::size_t neighbours_ = 64;
 };

@@ -85,7 +85,23 @@ TEST(ScatteredEstimator, AnswersASampleAsItWasGiven) {
         EXPECT_EQ(answer.source, Source::Measured);
         EXPECT_DOUBLE_EQ(answer.f[Band::R], point.f);
         EXPECT_DOUBLE_EQ(answer.f[Band::B], point.f);
+        EXPECT_FALSE(answer.u(Band::R)) << "the data say nothing of it";
     }
+    // Between samples the deviation is learned from them all.
+    const Answer between = (*made)->answer(pairOf(20, 0, 40, 77));
+    ASSERT_TRUE(between.uSystematic);
+    EXPECT_GT((*between.uSystematic)[Band::R], 0);
+    EXPECT_LT((*between.uSystematic)[Band::R], 0.05 * between.f[Band::R]);
+    EXPECT_FALSE(between.uRandom);
+    // What the data do say is said again.
+    BrdfData known = dataOf(points);
+    known.uKnown = true;
+    for (FitRow& row : known.rows) row.uRandom[0] = 0.01 * row.f[0];
+    const auto stated = ScatteredEstimator::over(known);
+    ASSERT_TRUE(stated) << stated.error().message;
+    const Answer given = (*stated)->answer(points[7].pair);
+    ASSERT_TRUE(given.u(Band::G));
+    EXPECT_DOUBLE_EQ(*given.u(Band::G), 0.01 * points[7].f);
 }
 
 TEST(ScatteredEstimator, IsRightBetweenItsSamplesAndReciprocal) {
