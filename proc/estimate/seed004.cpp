@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -54,6 +55,15 @@ std::vector<Radians> incidencesOf(const ScatteredSet& data) {
     const auto same = [](Radians a, Radians b) { return (b - a).value() < kSameIncidence; };
     all.erase(std::unique(all.begin(), all.end(), same), all.end());
     return all;
+}
+
+/// Of one side's directions; below 90 degrees, where an edge must be.
+Radians largestTheta(const ScatteredSet& data, Direction LightView::*side) {
+    Radians largest(0);
+    for (const SampleId id : data.ids()) {
+        largest = std::max(largest, (data.find(id)->pair.*side).theta());
+    }
+    return std::min(largest, Radians(std::nextafter((90_deg).value(), 0.0)));
 }
 
 Made interpolator(const ScatteredSet& data, const Seed004Options& options, SeedInterpolator which) {
@@ -110,11 +120,13 @@ std::optional<SeedExtrapolator> seedExtrapolatorNamed(std::string_view name) {
 
 Result<std::unique_ptr<Scatterer>> makeSeed004(const ScatteredSet& data,
                                                const Seed004Options& options) {
-    return beyond(beyond(interpolator(data, options, options.interpolator),
-                         options,
-                         {Side::Outgoing, options.outgoingEdge}),
+    const Beyond outgoing{Side::Outgoing,
+                          options.outgoingEdge.value_or(largestTheta(data, &LightView::out))};
+    const Beyond incoming{Side::Incoming,
+                          options.incomingEdge.value_or(largestTheta(data, &LightView::in))};
+    return beyond(beyond(interpolator(data, options, options.interpolator), options, outgoing),
                   options,
-                  {Side::Incoming, options.incomingEdge});
+                  incoming);
 }
 
 }  // namespace gonio::proc

@@ -48,8 +48,8 @@ struct Seed004Options {
 
     SeedExtrapolator beyondOutgoing = SeedExtrapolator::Constant;
     SeedExtrapolator beyondIncoming = SeedExtrapolator::Constant;
-    Radians outgoingEdge = 75_deg;
-    Radians incomingEdge = 60_deg;
+    std::optional<Radians> outgoingEdge;  ///< empty: the data's largest theta_o
+    std::optional<Radians> incomingEdge;  ///< empty: the data's largest theta_i
     BezierOptions bezier;
     GradientOptions gradient;
 };

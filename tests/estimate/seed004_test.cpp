@@ -38,6 +38,8 @@ Seed004Options options(SeedInterpolator interpolator,
 Seed004Options trapped(SeedInterpolator interpolator, SeedExtrapolator beyond) {
     Seed004Options all = options(interpolator, beyond);
     all.gridLinear.incidences = {0_deg, 60_deg};
+    all.outgoingEdge = 75_deg;
+    all.incomingEdge = 60_deg;
     return all;
 }
 
@@ -66,6 +68,31 @@ TEST(Seed004, ReproducesAConstantOverTheWholeHemisphere) {
             }
         }
     }
+}
+
+TEST(Seed004, ExtrapolatesFromTheLargestAnglesOfTheData) {
+    std::vector<ScatteredSample> samples;
+    for (const double i : {0.0, 40.0, 80.0}) {
+        for (double o = 0; o <= 85; o += 5) {
+            for (double phi = 0; phi < 360; phi += 15) {
+                samples.push_back(sampleAt(pairAt(i, o, phi), i == 80 ? 7 : 1));
+            }
+        }
+    }
+    const ScatteredSet data = setOf(samples);
+    for (const SeedInterpolator interpolator : kInterpolators) {
+        const auto chain = made(makeSeed004(data, options(interpolator)));
+        const Answer last = chain->answer(pairAt(80, 85, 30));
+        EXPECT_EQ(last.source, Source::Measured) << name(interpolator);
+        EXPECT_NEAR(last.f[Band::R], 7, 1e-9) << name(interpolator);
+        const Answer beyond = chain->answer(pairAt(85, 40, 30));
+        EXPECT_EQ(beyond.source, Source::Extrapolated) << name(interpolator);
+        EXPECT_NEAR(beyond.f[Band::R], 7, 1e-9) << name(interpolator);
+    }
+    // What reaches the horizon leaves nothing beyond.
+    const ScatteredSet all =
+        setOf({sampleAt(pairAt(0, 89.9999), 0.5), sampleAt(pairAt(90, 90), 1)});
+    EXPECT_TRUE(made(makeSeed004(all))->answer(pairAt(0, 89.9999)).present());
 }
 
 TEST(Seed004, ExtrapolatesIncidenceOutOfExtrapolatedOutgoingData) {
@@ -103,8 +130,8 @@ TEST(Seed004, AnswersTheCellsOfAMeasuredSample) {
             EXPECT_EQ(answer.source, Source::Measured);
             EXPECT_NEAR(answer.f[Band::R], byPosition(20_deg, CellGrid::centre(cell)), 1e-12);
         }
-        // Between cells, and just inside the edge, where the last row of cells ends at 74.5.
-        for (const LightView& pair : {pairAt(20, 40.2, 33), pairAt(20, 74.9, 100)}) {
+        // Between cells, and just inside the edge, which is the last row of centres.
+        for (const LightView& pair : {pairAt(20, 40.2, 33), pairAt(20, 74.4, 100)}) {
             const Answer answer = chain->answer(pair);
             EXPECT_EQ(answer.source, Source::Interpolated);
             EXPECT_NEAR(answer.f[Band::R], byPosition(20_deg, pair.out), 0.02);
@@ -120,7 +147,8 @@ TEST(Seed004, HandlesOneSampleAndAllCellsMissingButOne) {
         const Answer answer = chain->answer(pairAt(0, 0));
         EXPECT_DOUBLE_EQ(answer.f[Band::R], 0.5) << name(interpolator);
         EXPECT_EQ(answer.source, Source::Measured);
-        EXPECT_FALSE(chain->answer(pairAt(45, 70)).present());
+        // All else lies beyond it.
+        EXPECT_EQ(chain->answer(pairAt(45, 70)).source, Source::Extrapolated);
     }
 }
 
