@@ -52,6 +52,7 @@ Json toJson(const Difference& row) {
             {"band", letter(row.band)},
             {"values", row.values},
             {"only_one", row.oneOnly},
+            {"stated", row.stated},
             {"relative_rms", number(row.relativeRms)},
             {"relative_mean", number(row.relativeMean)},
             {"log_rms", number(row.logRms)},
