@@ -8,7 +8,6 @@
 #include "proc/estimate/scattered_estimator.h"
 #include "proc/estimate/seed004.h"
 #include "proc/formats/points_csv.h"
-#include "proc/table/scattered_of.h"
 
 namespace gonio::daemon {
 namespace {
@@ -32,30 +31,17 @@ Result<Prior> priorOf(const EstimatorChoice& choice) {
     });
 }
 
-Result<Opened> ofTheThesis(proc::SeedInterpolator interpolator,
-                           const Result<proc::Scattered>& points) {
-    if (!points) return points.error();
-    auto made = proc::makeSeed004(
-        points->set,
-        {.interpolator = interpolator, .gridFilledBy = proc::SeedInterpolator::AxisLinear});
-    if (!made) return made.error();
-    return Opened(std::move(*made));
-}
-
-Result<proc::Scattered> scatteredOf(const Material& material) {
-    if (material.sample != nullptr) return proc::scatteredOf(*material.sample);
-    return proc::scatteredOf(*material.table);
-}
-
 Result<Estimated> ofMaterial(Material material, const EstimatorChoice& choice) {
     if (choice.name == "none") {
         Opened lookup = material.scatterer;
         return Estimated{std::move(lookup), std::move(material)};
     }
     if (const auto seed = proc::seedInterpolatorNamed(choice.name)) {
-        auto made = ofTheThesis(*seed, scatteredOf(material));
+        const proc::Seed004Options options{.interpolator = *seed};
+        auto made = material.sample != nullptr ? proc::makeSeed004(*material.sample, options)
+                                               : proc::makeSeed004(*material.table, options);
         if (!made) return made.error();
-        return Estimated{std::move(*made), std::move(material)};
+        return Estimated{Opened(std::move(*made)), std::move(material)};
     }
     proc::SampleEstimatorOptions options{.method = choice.name, .effort = choice.effort};
     auto prior = priorOf(choice);

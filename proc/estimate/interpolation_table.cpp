@@ -8,7 +8,6 @@
 #include "proc/estimate/coverage.h"
 #include "proc/estimate/sample_estimator.h"
 #include "proc/estimate/seed004.h"
-#include "proc/table/scattered_of.h"
 
 namespace gonio::proc {
 namespace {
@@ -43,14 +42,6 @@ Made plain(const SampleSet& set, const std::string& name) {
     return method ? std::make_shared<const Plain>(std::move(*method)) : nullptr;
 }
 
-Made ofTheThesis(const SampleSet& set, SeedInterpolator interpolator) {
-    const auto points = scatteredOf(set);
-    if (!points) return nullptr;
-    auto made = makeSeed004(
-        points->set, {.interpolator = interpolator, .gridFilledBy = SeedInterpolator::AxisLinear});
-    return made ? Made(std::move(*made)) : nullptr;
-}
-
 /// The method, and what it chose.
 struct Method {
     Made scatterer;
@@ -58,7 +49,10 @@ struct Method {
 };
 
 Method make(const std::string& name, const SampleSet& set) {
-    if (const auto seed = seedInterpolatorNamed(name)) return {ofTheThesis(set, *seed), ""};
+    if (const auto seed = seedInterpolatorNamed(name)) {
+        auto chain = makeSeed004(set, {.interpolator = *seed});
+        return {chain ? Made(std::move(*chain)) : nullptr, ""};
+    }
     if (Made baseline = plain(set, name)) return {std::move(baseline), ""};
     auto made = SampleEstimator::over(set, {.method = name, .prior = standardPrior});
     if (!made) return {};

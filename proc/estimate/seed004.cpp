@@ -6,9 +6,11 @@
 #include <string>
 #include <utility>
 
+#include "proc/estimate/band_wise.h"
 #include "proc/estimate/clamp_extrapolator.h"
 #include "proc/estimate/linear_extrapolator.h"
 #include "proc/estimate/no_extrapolation.h"
+#include "proc/table/scattered_of.h"
 
 namespace gonio::proc {
 namespace {
@@ -100,6 +102,21 @@ Made beyond(Made inner, const Seed004Options& options, const Beyond& edge) {
     return inner;
 }
 
+/// Whether a cell that is usable in one band is so in all.
+bool sameCells(const SampleSet& sample) {
+    for (const LedTable& led : sample.leds) {
+        const std::size_t cells = std::max(
+            {led.bands[0].flags.size(), led.bands[1].flags.size(), led.bands[2].flags.size()});
+        for (std::size_t cell = 0; cell < cells; ++cell) {
+            const bool first = led.bands[0].usable(cell);
+            if (led.bands[1].usable(cell) != first || led.bands[2].usable(cell) != first) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
 }  // namespace
 
 std::string_view name(SeedInterpolator interpolator) {
@@ -120,6 +137,10 @@ std::optional<SeedExtrapolator> seedExtrapolatorNamed(std::string_view name) {
 
 Result<std::unique_ptr<Scatterer>> makeSeed004(const ScatteredSet& data,
                                                const Seed004Options& options) {
+    if (data.empty()) {
+        return Error{ErrorKind::Quality,
+                     "estimate: no value can be used: all are missing, saturated or blocked"};
+    }
     const Beyond outgoing{Side::Outgoing,
                           options.outgoingEdge.value_or(largestTheta(data, &LightView::out))};
     const Beyond incoming{Side::Incoming,
@@ -127,6 +148,30 @@ Result<std::unique_ptr<Scatterer>> makeSeed004(const ScatteredSet& data,
     return beyond(beyond(interpolator(data, options, options.interpolator), options, outgoing),
                   options,
                   incoming);
+}
+
+Result<std::unique_ptr<Scatterer>> makeSeed004(const SampleSet& sample,
+                                               const Seed004Options& options) {
+    if (sameCells(sample)) {
+        const Result<Scattered> all = scatteredOf(sample);
+        return all ? makeSeed004(all->set, options) : all.error();
+    }
+    std::array<std::unique_ptr<const Scatterer>, 3> bands;
+    for (const Band band : kBands) {
+        const Result<Scattered> own = scatteredOf(sample, band);
+        if (!own) return own.error();
+        if (own->set.empty()) continue;
+        Made made = makeSeed004(own->set, options);
+        if (!made) return made.error();
+        bands[index(band)] = std::move(*made);
+    }
+    return std::unique_ptr<Scatterer>(std::make_unique<BandWise>(std::move(bands)));
+}
+
+Result<std::unique_ptr<Scatterer>> makeSeed004(const SpecularTable& table,
+                                               const Seed004Options& options) {
+    const Result<Scattered> nodes = scatteredOf(table);
+    return nodes ? makeSeed004(nodes->set, options) : nodes.error();
 }
 
 }  // namespace gonio::proc

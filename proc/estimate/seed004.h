@@ -39,12 +39,15 @@ enum class SeedExtrapolator {
 [[nodiscard]] std::string_view name(SeedExtrapolator extrapolator);
 [[nodiscard]] std::optional<SeedExtrapolator> seedExtrapolatorNamed(std::string_view name);
 
+struct SampleSet;
+struct SpecularTable;
+
 struct Seed004Options {
     SeedInterpolator interpolator = SeedInterpolator::Shepard;
     ShepardOptions shepard;
     AxisReach axisLinear;
     GridLinearOptions gridLinear;  ///< without incidences: those of the data
-    SeedInterpolator gridFilledBy = SeedInterpolator::Shepard;  ///< not the grid again
+    SeedInterpolator gridFilledBy = SeedInterpolator::AxisLinear;  ///< not the grid again
 
     SeedExtrapolator beyondOutgoing = SeedExtrapolator::Constant;
     SeedExtrapolator beyondIncoming = SeedExtrapolator::Constant;
@@ -55,8 +58,15 @@ struct Seed004Options {
 };
 
 /// The chain over these data. A Usage error for options out of their domain, and for a grid over
-/// data of more than 256 incidences when no planes are given.
+/// data of more than 256 incidences when no planes are given; a Quality error for no data.
 [[nodiscard]] Result<std::unique_ptr<Scatterer>> makeSeed004(const ScatteredSet& data,
+                                                             const Seed004Options& options = {});
+/// Over the usable cells of a measured sample: of all bands at once where all were measured in the
+/// same cells, else band by band. A band without any has no answer.
+[[nodiscard]] Result<std::unique_ptr<Scatterer>> makeSeed004(const SampleSet& sample,
+                                                             const Seed004Options& options = {});
+/// Over the nodes of a table; also a Usage error as scatteredOf().
+[[nodiscard]] Result<std::unique_ptr<Scatterer>> makeSeed004(const SpecularTable& table,
                                                              const Seed004Options& options = {});
 
 }  // namespace gonio::proc

@@ -176,15 +176,39 @@ TEST(Seed004, RunsThroughItsExtremesWithTrapsOn) {
     }
 }
 
-TEST(Seed004, OfNoDataAnswersNothingOrRefuses) {
-    for (const SeedInterpolator interpolator :
-         {SeedInterpolator::Shepard, SeedInterpolator::AxisLinear}) {
-        const auto chain = made(makeSeed004(ScatteredSet{}, options(interpolator)));
-        for (const double theta : {0.0, 30.0, 80.0, 90.0}) {
-            EXPECT_FALSE(chain->answer(pairAt(0, theta)).present());
+TEST(Seed004, RefusesNoData) {
+    SampleSet missing = gonio::test::sampleSet([](Radians, const Direction&) { return 0.1; });
+    for (LedTable& led : missing.leds) led.bands = {};
+    for (const SeedInterpolator interpolator : kInterpolators) {
+        for (const auto& none :
+             {makeSeed004(ScatteredSet{}, options(interpolator)), makeSeed004(missing)}) {
+            ASSERT_FALSE(none);
+            EXPECT_EQ(none.error().kind, ErrorKind::Quality) << none.error().message;
         }
     }
-    test::expectUsageError(makeSeed004(ScatteredSet{}, options(SeedInterpolator::GridLinear)));
+}
+
+TEST(Seed004, UsesTheBandsThatWereMeasuredEachInItsOwnCells) {
+    SampleSet sample = gonio::test::sampleSet([](Radians, const Direction&) { return 0.1; });
+    sample.leds.resize(2);
+    for (LedTable& led : sample.leds) {
+        led.bands[1] = {};
+        // Blue is missing where red is there: one hole of its own.
+        led.bands[2].flags[4000].clear(Flag::Measured);
+    }
+    const LightView hole{Direction::fromSpherical(20_deg, Radians(0)), CellGrid::centre(4000)};
+    for (const SeedInterpolator interpolator :
+         {SeedInterpolator::Shepard, SeedInterpolator::AxisLinear}) {
+        const auto chain = made(makeSeed004(sample, {.interpolator = interpolator}));
+        const Answer answer = chain->answer(hole);
+        EXPECT_DOUBLE_EQ(answer.f[Band::R], 0.1) << name(interpolator);
+        EXPECT_TRUE(std::isnan(answer.f[Band::G]));
+        EXPECT_NEAR(answer.f[Band::B], 0.3, 1e-12);
+        EXPECT_DOUBLE_EQ((*answer.uRandom)[Band::R], 1e-3);
+        EXPECT_EQ(answer.source, Source::Interpolated) << "of blue";
+        EXPECT_EQ(chain->answer({hole.in, CellGrid::centre(4001)}).source, Source::Measured);
+        EXPECT_FALSE(chain->answer(pairAt(20, 95)).present());
+    }
 }
 
 TEST(Seed004, RefusesAGridOfAGridAndOptionsOutOfTheirDomain) {
