@@ -74,11 +74,13 @@ public:
             for (std::size_t band = 0; band < 3; ++band) error[band] += belt.error[band];
         }
         Albedo mean;
+        mean.converged = true;
         for (std::size_t band = 0; band < 3; ++band) {
             mean.bands[band] = bandOf(total.bands[band], error[band]);
+            // That of both integrals. A band without an answer has none, and nothing to converge.
+            if (mean.bands[band].errorBound > options_.tolerance) mean.converged = false;
         }
         mean.evaluations = evaluations_;
-        mean.converged = this->error() <= options_.tolerance;
         return mean;
     }
 
