@@ -122,6 +122,7 @@ struct AlbedoOptions {
     std::string file;
     std::string incidences;          ///< degrees with commas; empty: those of the file
     std::string estimator = "auto";  ///< none: of a sample the sum over its cells
+    std::string effort = "standard";
 };
 /// Directional-hemispherical and mean albedo, with their uncertainties and what is missing.
 Result<void> albedo(const CommonOptions& common, const AlbedoOptions& options);

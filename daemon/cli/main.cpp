@@ -289,6 +289,10 @@ void Program::addFiles() {
     sub->add_option("--estimator",
                     albedo.estimator,
                     "over the whole hemisphere, by auto or a method; none: what was measured");
+    sub->add_option(
+        "--effort",
+        albedo.effort,
+        "draft, standard or reference: to 0.001, 0.0001 or 0.00001, and of an estimator");
 
     sub = command(app, "compare", "whether two surfaces agree within their uncertainties", [this] {
         return daemon::compare(common, compare);

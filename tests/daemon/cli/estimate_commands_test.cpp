@@ -153,7 +153,14 @@ TEST(Albedo, OfAModelIsExactAndOfATableWhatItIs) {
     for (const Json& row : lambert["rows"]) {
         EXPECT_NEAR(row["bands"]["g"]["albedo"].get<double>(), 0.5, 1e-6);
         EXPECT_NEAR(row["bands"]["g"]["missing"].get<double>(), 0, 1e-9);
+        EXPECT_TRUE(row["converged"].get<bool>());
+        EXPECT_GE(row["evaluations"].get<int>(), 5400);
     }
+    const Ran cheap = gonio(
+        {"albedo", "model:ggx,f0=1,alpha=0.001", "--incidences", "89.9", "--effort", "draft"});
+    EXPECT_NE(cheap.out.find("5400"), std::string::npos) << cheap.out;
+    EXPECT_NE(cheap.out.find("converged"), std::string::npos) << cheap.out;
+    EXPECT_EQ(gonio({"albedo", "model:ggx,f0=1,alpha=0.1", "--effort", "banana"}).exitCode, 2);
     EXPECT_TRUE(lambert["rows"][2]["incidence_deg"].is_null());
     const Ran bad = gonio({"albedo", "model:lambert,albedo=0.5", "--incidences", "95"});
     EXPECT_EQ(bad.exitCode, 2);
