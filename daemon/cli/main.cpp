@@ -12,6 +12,7 @@
 #include "daemon/store.h"
 #include "proc/core/log.h"
 #include "proc/core/number_text.h"
+#include "proc/fit/prior_library.h"
 
 namespace gonio::daemon {
 namespace {
@@ -309,7 +310,7 @@ void Program::addFiles() {
         return buildPrior(common, prior);
     });
     sub->add_option("--count", prior.count, "materials drawn from documented families")
-        ->check(CLI::Range(10, 20000));
+        ->check(CLI::Range(proc::PriorLibrary::kFewest, std::size_t{20000}));
     sub->add_option("--seed", prior.seed, "of the draws");
     sub->add_option("--fits", prior.fits, "files of published fits to add");
     sub->add_option("-o,--output", prior.output, "the file to write")->required();
