@@ -193,16 +193,24 @@ TEST(PriorBuild, WritesALibraryThatReadsBack) {
     const Json json = Json::parse(ran.out);
     EXPECT_EQ(test::complaintsOf(json), "");
     EXPECT_EQ(json["materials"], 60);
+    const std::string points = pointsFile(gonio).string();
     const auto rows = evaluated(gonio,
                                 {"eval",
                                  tableFile(gonio).string(),
                                  "--points",
-                                 pointsFile(gonio).string(),
+                                 points,
                                  "--estimator",
-                                 "specular-log",
+                                 "prior",
                                  "--prior",
                                  file});
-    EXPECT_EQ(rows.size(), 4U);
+    const auto truth = evaluated(gonio, {"eval", kSurface, "--points", points});
+    ASSERT_EQ(rows.size(), 4U);
+    for (const std::size_t between : {1U, 2U}) {
+        const double f = std::stod(truth[between].first);
+        EXPECT_EQ(rows[between].second, "prior");
+        EXPECT_NEAR(std::stod(rows[between].first), f, 0.01 * f);
+        EXPECT_NE(rows[between].first, truth[between].first);
+    }
     EXPECT_EQ(gonio({"prior", "build", "--fits", file, "-o", file}).exitCode, 6);
 }
 
