@@ -99,14 +99,9 @@ InterpolationRow rowOf(const std::string& name,
             row.errors.push_back({nan, nan, nan, 1});
             continue;
         }
-        const Stopwatch asking(clock);
         row.errors.push_back(errorOf(*method.scatterer, *material.truth, asked));
-        if (row.errors.size() == 1) {
-            constexpr double kCells = 15287;  // to 75 degrees
-            const double answers =
-                kCells * static_cast<double>(asked.incidences.size()) / asked.stride;
-            row.microseconds = asking.elapsed().count() / answers * 1e6;
-        }
+        if (row.errors.size() > 1) continue;
+        row.microseconds = microsecondsPerAnswer(*method.scatterer, askedPairs(asked), clock);
     }
     return row;
 }
@@ -187,17 +182,20 @@ InterpolationSummary summaryOf(const std::vector<InterpolationRow>& rows,
                                bool inFamily,
                                std::size_t region,
                                RegionPart part) {
+    InterpolationSummary summary;
     std::vector<double> errors;
     for (const InterpolationRow& row : rows) {
         if (row.method != method || row.inFamily != inFamily) continue;
+        ++summary.materials;
         const RegionError& error = row.errors[region];
         const double value = part == RegionPart::Lobe ? error.lobe : error.hemisphere;
         if (!std::isnan(value)) errors.push_back(value);
     }
-    const double nan = std::numeric_limits<double>::quiet_NaN();
-    if (errors.empty()) return {nan, nan};
-    const double worst = *std::max_element(errors.begin(), errors.end());
-    return {median(errors), worst};
+    summary.answered = errors.size();
+    if (errors.empty()) return summary;
+    summary.worst = *std::max_element(errors.begin(), errors.end());
+    summary.median = median(errors);
+    return summary;
 }
 
 }  // namespace gonio::proc
