@@ -39,7 +39,7 @@ Result<void> albedo(const CommonOptions& common, const AlbedoOptions& options) {
                      "albedo: --estimator none sums the cells of the LEDs' own incidences; leave "
                      "--incidences out"};
     }
-    const auto incidences = options.incidences.empty() ? Result(opened->material.incidences())
+    const auto incidences = options.incidences.empty() ? Result(opened->incidences())
                                                        : incidenceList(options.incidences);
     if (!incidences) return incidences.error().in("albedo");
     const auto rows =

@@ -276,9 +276,11 @@ void Program::addFiles() {
     sub->add_option("--effort",
                     eval.effort,
                     "draft, standard or reference, of a model's evaluation and of an estimator");
-    sub->add_option("--estimator",
-                    eval.estimator,
-                    "between and beyond the measured angles: auto, none, or a method by name");
+    sub->add_option(
+        "--estimator",
+        eval.estimator,
+        "between and beyond the measured angles: auto, none, or a method by name, such as "
+        "specular-log or grid-linear:bezier");
     sub->add_option("--prior", eval.prior, "a library of `prior build`; default: the standard one");
 
     sub = command(app, "albedo", "how much of the light a surface sends back", [this] {
@@ -301,7 +303,9 @@ void Program::addFiles() {
     sub->add_option("a", compare.a, "a file, sample:NAME or model:SPEC")->required();
     sub->add_option("b", compare.b, "likewise")->required();
     sub->add_option("--incidences", compare.incidences, "degrees with commas; default: those of a");
-    sub->add_option("--estimator", compare.estimator, "auto, none, or a method by name, of both");
+    sub->add_option("--estimator",
+                    compare.estimator,
+                    "auto, none, or a method by name, of both; default: none, of a .csv auto");
 
     CLI::App* parent = app.add_subcommand("prior", "the statistical prior of the estimators");
     parent->require_subcommand(1);

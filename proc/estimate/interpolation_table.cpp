@@ -49,8 +49,8 @@ struct Method {
 };
 
 Method make(const std::string& name, const SampleSet& set) {
-    if (const auto seed = seedInterpolatorNamed(name)) {
-        auto chain = makeSeed004(set, {.interpolator = *seed});
+    if (const auto seed = seed004Named(name)) {
+        auto chain = makeSeed004(set, *seed);
         return {chain ? Made(std::move(*chain)) : nullptr, ""};
     }
     if (Made baseline = plain(set, name)) return {std::move(baseline), ""};

@@ -33,14 +33,6 @@ constexpr std::array<std::pair<SeedExtrapolator, std::string_view>, 5> kExtrapol
 }};
 
 template <class Named>
-std::string_view nameIn(const Named& all, typename Named::value_type::first_type which) {
-    for (const auto& [value, name] : all) {
-        if (value == which) return name;
-    }
-    return "";
-}
-
-template <class Named>
 auto valueIn(const Named& all, std::string_view name)
     -> std::optional<typename Named::value_type::first_type> {
     for (const auto& [value, own] : all) {
@@ -119,20 +111,26 @@ bool sameCells(const SampleSet& sample) {
 
 }  // namespace
 
-std::string_view name(SeedInterpolator interpolator) {
-    return nameIn(kInterpolators, interpolator);
+std::optional<Seed004Options> seed004Named(std::string_view name) {
+    const std::size_t colon = name.find(':');
+    const auto interpolator = valueIn(kInterpolators, name.substr(0, colon));
+    if (!interpolator) return std::nullopt;
+    Seed004Options options{.interpolator = *interpolator};
+    if (colon == std::string_view::npos) return options;
+    const auto beyond = valueIn(kExtrapolators, name.substr(colon + 1));
+    if (!beyond) return std::nullopt;
+    options.beyondOutgoing = options.beyondIncoming = *beyond;
+    return options;
 }
 
-std::optional<SeedInterpolator> seedInterpolatorNamed(std::string_view name) {
-    return valueIn(kInterpolators, name);
-}
-
-std::string_view name(SeedExtrapolator extrapolator) {
-    return nameIn(kExtrapolators, extrapolator);
-}
-
-std::optional<SeedExtrapolator> seedExtrapolatorNamed(std::string_view name) {
-    return valueIn(kExtrapolators, name);
+std::string seed004Names() {
+    std::string all;
+    for (const auto& [value, name] : kInterpolators) all += std::string(name) + ", ";
+    all += "each alone or with";
+    for (const auto& [value, name] : kExtrapolators) {
+        all += (value == SeedExtrapolator::None ? " :" : ", :") + std::string(name);
+    }
+    return all;
 }
 
 Result<std::unique_ptr<Scatterer>> makeSeed004(const ScatteredSet& data,

@@ -7,7 +7,9 @@
 // answers beyond an edge are extrapolated. Where the thesis says 0 for what it cannot know, there
 // is no answer here.
 
+#include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "proc/estimate/axis_linear.h"
@@ -32,13 +34,6 @@ enum class SeedExtrapolator {
     Gradient  ///< GradientExtrapolator
 };
 
-/// "shepard", "axis-linear", "grid-linear".
-[[nodiscard]] std::string_view name(SeedInterpolator interpolator);
-[[nodiscard]] std::optional<SeedInterpolator> seedInterpolatorNamed(std::string_view name);
-/// "none", "linear", "constant", "bezier", "gradient".
-[[nodiscard]] std::string_view name(SeedExtrapolator extrapolator);
-[[nodiscard]] std::optional<SeedExtrapolator> seedExtrapolatorNamed(std::string_view name);
-
 struct SampleSet;
 struct SpecularTable;
 
@@ -56,6 +51,11 @@ struct Seed004Options {
     BezierOptions bezier;
     GradientOptions gradient;
 };
+
+/// "grid-linear", or with what is beyond both edges: "grid-linear:bezier".
+[[nodiscard]] std::optional<Seed004Options> seed004Named(std::string_view name);
+/// "shepard, axis-linear, grid-linear, each alone or with :none, :linear, ...".
+[[nodiscard]] std::string seed004Names();
 
 /// The chain over these data. A Usage error for options out of their domain, and for a grid over
 /// data of more than 256 incidences when no planes are given; a Quality error for no data.

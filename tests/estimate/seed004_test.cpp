@@ -43,16 +43,25 @@ Seed004Options trapped(SeedInterpolator interpolator, SeedExtrapolator beyond) {
     return all;
 }
 
-TEST(Seed004, NamesItsMethodsBothWays) {
-    for (const SeedInterpolator one : kInterpolators) {
-        EXPECT_EQ(seedInterpolatorNamed(name(one)), one);
+TEST(Seed004, IsNamedByItsInterpolatorAndWhatIsBeyond) {
+    const auto alone = seed004Named("shepard");
+    ASSERT_TRUE(alone);
+    EXPECT_EQ(alone->interpolator, SeedInterpolator::Shepard);
+    EXPECT_EQ(alone->beyondOutgoing, SeedExtrapolator::Constant);
+    const auto bezier = seed004Named("grid-linear:bezier");
+    ASSERT_TRUE(bezier);
+    EXPECT_EQ(bezier->interpolator, SeedInterpolator::GridLinear);
+    EXPECT_EQ(bezier->beyondOutgoing, SeedExtrapolator::Bezier);
+    EXPECT_EQ(bezier->beyondIncoming, SeedExtrapolator::Bezier);
+    for (const char* bad : {"banana", "", ":bezier", "shepard:", "shepard:banana", "bezier"}) {
+        EXPECT_FALSE(seed004Named(bad)) << bad;
     }
-    for (const SeedExtrapolator one : kExtrapolators) {
-        EXPECT_EQ(seedExtrapolatorNamed(name(one)), one);
+    // The list names what is understood.
+    EXPECT_NE(seed004Names().find("axis-linear, "), std::string::npos) << seed004Names();
+    for (const char* beyond : {":none", ":linear", ":constant", ":bezier", ":gradient"}) {
+        EXPECT_NE(seed004Names().find(beyond), std::string::npos);
+        EXPECT_TRUE(seed004Named(std::string("axis-linear") + beyond)) << beyond;
     }
-    EXPECT_EQ(name(SeedExtrapolator::Constant), "constant");
-    EXPECT_FALSE(seedInterpolatorNamed("banana"));
-    EXPECT_FALSE(seedExtrapolatorNamed(""));
 }
 
 TEST(Seed004, ReproducesAConstantOverTheWholeHemisphere) {
@@ -62,7 +71,8 @@ TEST(Seed004, ReproducesAConstantOverTheWholeHemisphere) {
         for (double i = 0; i < 90; i += 7.3) {
             for (double o = 0; o < 90; o += 6.1) {
                 const Answer answer = chain->answer(pairAt(i, o, 3 * i + o));
-                ASSERT_TRUE(answer.present()) << name(interpolator) << " " << i << " " << o;
+                ASSERT_TRUE(answer.present())
+                    << static_cast<int>(interpolator) << " " << i << " " << o;
                 EXPECT_NEAR(answer.f[Band::R], 0.25, 1e-12);
                 EXPECT_EQ(answer.source == Source::Extrapolated, i > 60 || o > 75);
             }
@@ -83,11 +93,11 @@ TEST(Seed004, ExtrapolatesFromTheLargestAnglesOfTheData) {
     for (const SeedInterpolator interpolator : kInterpolators) {
         const auto chain = made(makeSeed004(data, options(interpolator)));
         const Answer last = chain->answer(pairAt(80, 85, 30));
-        EXPECT_EQ(last.source, Source::Measured) << name(interpolator);
-        EXPECT_NEAR(last.f[Band::R], 7, 1e-9) << name(interpolator);
+        EXPECT_EQ(last.source, Source::Measured) << static_cast<int>(interpolator);
+        EXPECT_NEAR(last.f[Band::R], 7, 1e-9) << static_cast<int>(interpolator);
         const Answer beyond = chain->answer(pairAt(85, 40, 30));
-        EXPECT_EQ(beyond.source, Source::Extrapolated) << name(interpolator);
-        EXPECT_NEAR(beyond.f[Band::R], 7, 1e-9) << name(interpolator);
+        EXPECT_EQ(beyond.source, Source::Extrapolated) << static_cast<int>(interpolator);
+        EXPECT_NEAR(beyond.f[Band::R], 7, 1e-9) << static_cast<int>(interpolator);
     }
     // What reaches the horizon leaves nothing beyond.
     const ScatteredSet all =
@@ -145,7 +155,7 @@ TEST(Seed004, HandlesOneSampleAndAllCellsMissingButOne) {
     for (const SeedInterpolator interpolator : kInterpolators) {
         const auto chain = made(makeSeed004(one, options(interpolator)));
         const Answer answer = chain->answer(pairAt(0, 0));
-        EXPECT_DOUBLE_EQ(answer.f[Band::R], 0.5) << name(interpolator);
+        EXPECT_DOUBLE_EQ(answer.f[Band::R], 0.5) << static_cast<int>(interpolator);
         EXPECT_EQ(answer.source, Source::Measured);
         // All else lies beyond it.
         EXPECT_EQ(chain->answer(pairAt(45, 70)).source, Source::Extrapolated);
@@ -171,7 +181,8 @@ TEST(Seed004, RunsThroughItsExtremesWithTrapsOn) {
                     EXPECT_LE(std::abs(answer.f[Band::R]), 1e3 * (1 + 1e-12));
                 }
             }
-            EXPECT_GT(present, 0U) << name(interpolator) << " " << name(extrapolator);
+            EXPECT_GT(present, 0U)
+                << static_cast<int>(interpolator) << " " << static_cast<int>(extrapolator);
         }
     }
 }
@@ -201,7 +212,7 @@ TEST(Seed004, UsesTheBandsThatWereMeasuredEachInItsOwnCells) {
          {SeedInterpolator::Shepard, SeedInterpolator::AxisLinear}) {
         const auto chain = made(makeSeed004(sample, {.interpolator = interpolator}));
         const Answer answer = chain->answer(hole);
-        EXPECT_DOUBLE_EQ(answer.f[Band::R], 0.1) << name(interpolator);
+        EXPECT_DOUBLE_EQ(answer.f[Band::R], 0.1) << static_cast<int>(interpolator);
         EXPECT_TRUE(std::isnan(answer.f[Band::G]));
         EXPECT_NEAR(answer.f[Band::B], 0.3, 1e-12);
         EXPECT_DOUBLE_EQ((*answer.uRandom)[Band::R], 1e-3);
