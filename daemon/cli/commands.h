@@ -130,8 +130,8 @@ Result<void> albedo(const CommonOptions& common, const AlbedoOptions& options);
 struct CompareOptions {
     std::string a;
     std::string b;
-    std::string incidences;          ///< degrees with commas; empty: those of a
-    std::string estimator = "none";  ///< of both
+    std::string incidences;  ///< degrees with commas; empty: those of a
+    std::string estimator;   ///< of both; empty: none, of scattered values auto
 };
 /// Whether two surfaces agree within their uncertainties: relative, log and cosine-weighted
 /// differences, by region.
