@@ -9,7 +9,6 @@
 #include "proc/estimate/seed004.h"
 #include "proc/formats/points_csv.h"
 #include "proc/table/rotations.h"
-#include "proc/table/scattered_of.h"
 
 namespace gonio::daemon {
 namespace {
@@ -33,21 +32,6 @@ Result<Prior> priorOf(const EstimatorChoice& choice) {
     });
 }
 
-Result<Opened> ofTheThesis(proc::SeedInterpolator interpolator,
-                           const Result<proc::Scattered>& points) {
-    if (!points) return points.error();
-    auto made = proc::makeSeed004(
-        points->set,
-        {.interpolator = interpolator, .gridFilledBy = proc::SeedInterpolator::AxisLinear});
-    if (!made) return made.error();
-    return Opened(std::move(*made));
-}
-
-Result<proc::Scattered> scatteredOf(const Material& material) {
-    if (material.sample != nullptr) return proc::scatteredOf(*material.sample);
-    return proc::scatteredOf(*material.table);
-}
-
 Result<Estimated> ofMaterial(Material material, const EstimatorChoice& choice) {
     const bool turned =
         material.sample != nullptr && proc::rotationsOf(*material.sample).size() > 1;
@@ -61,10 +45,11 @@ Result<Estimated> ofMaterial(Material material, const EstimatorChoice& choice) {
         Opened lookup = material.scatterer;
         return Estimated{std::move(lookup), std::move(material)};
     }
-    if (const auto seed = proc::seedInterpolatorNamed(choice.name)) {
-        auto made = ofTheThesis(*seed, scatteredOf(material));
+    if (const auto seed = proc::seed004Named(choice.name)) {
+        auto made = material.sample != nullptr ? proc::makeSeed004(*material.sample, *seed)
+                                               : proc::makeSeed004(*material.table, *seed);
         if (!made) return made.error();
-        return Estimated{std::move(*made), std::move(material)};
+        return Estimated{Opened(std::move(*made)), std::move(material)};
     }
     proc::SampleEstimatorOptions options{.method = choice.name, .effort = choice.effort};
     auto prior = priorOf(choice);
@@ -93,31 +78,30 @@ Result<Estimated> ofScattered(const std::string& file, const EstimatorChoice& ch
     if (!data) return data.error().in("'" + file + "'");
     auto made = proc::ScatteredEstimator::over(*data);
     if (!made) return made.error().in("'" + file + "'");
-    return Estimated{Opened(std::move(*made)), Material{}};
+    return Estimated{Opened(std::move(*made)), Material{}, nullptr, data->incidences};
 }
 
 Result<void> checkName(const std::string& name) {
-    const std::vector<std::string> known = estimatorNames();
-    if (std::find(known.begin(), known.end(), name) != known.end()) return {};
+    std::vector<std::string> known{"auto", "none"};
+    for (const std::string& method : proc::methodNames()) known.push_back(method);
+    const bool one = std::find(known.begin(), known.end(), name) != known.end();
+    if (one || proc::seed004Named(name)) return {};
     std::string list;
-    for (const std::string& one : known) list += (list.empty() ? "" : ", ") + one;
-    return Error{ErrorKind::Usage, "--estimator '" + name + "' is not known; known: " + list};
+    for (const std::string& method : known) list += method + ", ";
+    return Error{ErrorKind::Usage,
+                 "--estimator '" + name + "' is not known; known: " + list + proc::seed004Names()};
 }
 
 }  // namespace
 
-std::vector<std::string> estimatorNames() {
-    std::vector<std::string> names{"auto", "none", "shepard", "axis-linear", "grid-linear"};
-    for (std::string& name : proc::methodNames()) names.push_back(std::move(name));
-    return names;
-}
+bool holdsScattered(const std::string& f) { return std::filesystem::path(f).extension() == ".csv"; }
 
 Result<Estimated> openEstimated(const std::string& f,
                                 const std::filesystem::path& store,
                                 const EstimatorChoice& choice,
                                 proc::EvalPath path) {
     if (auto known = checkName(choice.name); !known) return known.error();
-    if (std::filesystem::path(f).extension() == ".csv") return ofScattered(f, choice);
+    if (holdsScattered(f)) return ofScattered(f, choice);
     Result<Material> material = openMaterial(f, store, path);
     if (!material) return material.error();
     if (material->sample != nullptr || material->table != nullptr) {

@@ -1,10 +1,10 @@
 #pragma once
 // --estimator: how a file is asked between and beyond what was measured.
 //   auto        what predicts the sample best (proc/estimate/sample_estimator.h); of scattered
-//   values
-//               kriging (scattered_estimator.h)
+//               values kriging (scattered_estimator.h)
 //   none        the look-up alone: no answer beyond the angles of the file
-//   shepard, axis-linear, grid-linear   the thesis's (proc/estimate/seed004.h)
+//   shepard, axis-linear, grid-linear   the thesis's (proc/estimate/seed004.h), and beyond the
+//               angles its constant extrapolation, or another one: grid-linear:bezier
 //   and the names of methodNames(), one method of auto's without the choice.
 // All but none take a sample as isotropic: one of several rotations is looked up by auto, too.
 
@@ -30,9 +30,16 @@ struct Estimated {
     Material material;  ///< the file's own; empty kind for scattered values
     /// Of the scatterer, where it chooses; else null.
     const proc::SampleEstimator* sample = nullptr;
+    std::vector<Radians> scattered;  ///< incidences of scattered values, at most 12
+
+    /// That the file knows: the LEDs' where it is a formula.
+    [[nodiscard]] std::vector<Radians> incidences() const {
+        return scattered.empty() ? material.incidences() : scattered;
+    }
 };
 
-[[nodiscard]] std::vector<std::string> estimatorNames();
+/// Whether F is a .csv of scattered values: `auto` is then the only one.
+[[nodiscard]] bool holdsScattered(const std::string& f);
 
 /// F, ready to answer. A model is its own estimator: any but auto and none is a Usage error; so is
 /// a name that is none. A .csv file holds scattered values.

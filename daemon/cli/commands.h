@@ -123,6 +123,7 @@ struct AlbedoOptions {
     std::string file;
     std::string incidences;          ///< degrees with commas; empty: those of the file
     std::string estimator = "auto";  ///< none: of a sample the sum over its cells
+    std::string effort = "standard";
 };
 /// Directional-hemispherical and mean albedo, with their uncertainties and what is missing.
 Result<void> albedo(const CommonOptions& common, const AlbedoOptions& options);
@@ -130,8 +131,8 @@ Result<void> albedo(const CommonOptions& common, const AlbedoOptions& options);
 struct CompareOptions {
     std::string a;
     std::string b;
-    std::string incidences;          ///< degrees with commas; empty: those of a
-    std::string estimator = "none";  ///< of both
+    std::string incidences;  ///< degrees with commas; empty: those of a
+    std::string estimator;   ///< of both; empty: none, of scattered values auto
 };
 /// Whether two surfaces agree within their uncertainties: relative, log and cosine-weighted
 /// differences, by region.

@@ -10,6 +10,7 @@
 #include "daemon/estimators.h"
 #include "proc/core/number_text.h"
 #include "proc/estimate/comparison.h"
+#include "proc/formats/file_degrees.h"
 
 namespace gonio::daemon {
 namespace {
@@ -31,7 +32,7 @@ std::vector<std::vector<std::string>> tableOf(const std::vector<Difference>& row
                                                  "cosine rms",
                                                  "within 2 u"}};
     for (const Difference& row : rows) {
-        table.push_back({fixed(row.incidence.degrees(), 0),
+        table.push_back({shortest(proc::fileDegrees(row.incidence)),
                          row.region,
                          std::string(letter(row.band)),
                          std::to_string(row.values),
@@ -52,6 +53,7 @@ Json toJson(const Difference& row) {
             {"band", letter(row.band)},
             {"values", row.values},
             {"only_one", row.oneOnly},
+            {"stated", row.stated},
             {"relative_rms", number(row.relativeRms)},
             {"relative_mean", number(row.relativeMean)},
             {"log_rms", number(row.logRms)},
@@ -63,18 +65,19 @@ Json toJson(const Difference& row) {
 }  // namespace
 
 Result<void> compare(const CommonOptions& common, const CompareOptions& options) {
-    const EstimatorChoice choice{.name = options.estimator};
     const auto open = [&](const std::string& f) {
-        // A formula answers everywhere: it needs no method.
-        const bool model = f.starts_with("model:");
-        return openEstimated(f, common.store, model ? EstimatorChoice{} : choice);
+        // A formula answers everywhere: it needs no method. Scattered values have but one.
+        const bool scattered = options.estimator.empty() && holdsScattered(f);
+        if (scattered || f.starts_with("model:")) return openEstimated(f, common.store, {});
+        const bool named = !options.estimator.empty();
+        return openEstimated(f, common.store, {.name = named ? options.estimator : "none"});
     };
     const Result<Estimated> a = open(options.a);
     if (!a) return a.error().in("compare");
     const Result<Estimated> b = open(options.b);
     if (!b) return b.error().in("compare");
-    const auto incidences = options.incidences.empty() ? Result(a->material.incidences())
-                                                       : incidenceList(options.incidences);
+    const auto incidences =
+        options.incidences.empty() ? Result(a->incidences()) : incidenceList(options.incidences);
     if (!incidences) return incidences.error().in("compare");
     const auto rows = proc::compareSurfaces(*a->scatterer, *b->scatterer, *incidences);
     if (rows.empty()) {

@@ -45,7 +45,8 @@ Json estimatorFacts(const Estimated& opened, const std::string& name) {
         json["prior"] = prior != nullptr ? gateJson(*prior) : Json();
     }
     json["albedo"] = Json::array();
-    for (const AlbedoRow& row : albedoRows(*opened.scatterer, opened.material.incidences())) {
+    for (const AlbedoRow& row :
+         albedoRows(*opened.scatterer, opened.material.incidences(), Effort::Standard)) {
         json["albedo"].push_back(albedoJson(row));
     }
     return json;

@@ -12,6 +12,7 @@
 #include "daemon/store.h"
 #include "proc/core/log.h"
 #include "proc/core/number_text.h"
+#include "proc/fit/prior_library.h"
 
 namespace gonio::daemon {
 namespace {
@@ -281,9 +282,11 @@ void Program::addFiles() {
     sub->add_option("--effort",
                     eval.effort,
                     "draft, standard or reference, of a model's evaluation and of an estimator");
-    sub->add_option("--estimator",
-                    eval.estimator,
-                    "between and beyond the measured angles: auto, none, or a method by name");
+    sub->add_option(
+        "--estimator",
+        eval.estimator,
+        "between and beyond the measured angles: auto, none, or a method by name, such as "
+        "specular-log or grid-linear:bezier");
     sub->add_option("--prior", eval.prior, "a library of `prior build`; default: the standard one");
 
     sub = command(app, "albedo", "how much of the light a surface sends back", [this] {
@@ -295,6 +298,10 @@ void Program::addFiles() {
     sub->add_option("--estimator",
                     albedo.estimator,
                     "over the whole hemisphere, by auto or a method; none: what was measured");
+    sub->add_option(
+        "--effort",
+        albedo.effort,
+        "draft, standard or reference: to 0.001, 0.0001 or 0.00001, and of an estimator");
 
     sub = command(app, "compare", "whether two surfaces agree within their uncertainties", [this] {
         return daemon::compare(common, compare);
@@ -302,7 +309,9 @@ void Program::addFiles() {
     sub->add_option("a", compare.a, "a file, sample:NAME or model:SPEC")->required();
     sub->add_option("b", compare.b, "likewise")->required();
     sub->add_option("--incidences", compare.incidences, "degrees with commas; default: those of a");
-    sub->add_option("--estimator", compare.estimator, "auto, none, or a method by name, of both");
+    sub->add_option("--estimator",
+                    compare.estimator,
+                    "auto, none, or a method by name, of both; default: none, of a .csv auto");
 
     CLI::App* parent = app.add_subcommand("prior", "the statistical prior of the estimators");
     parent->require_subcommand(1);
@@ -311,7 +320,7 @@ void Program::addFiles() {
         return buildPrior(common, prior);
     });
     sub->add_option("--count", prior.count, "materials drawn from documented families")
-        ->check(CLI::Range(10, 20000));
+        ->check(CLI::Range(proc::PriorLibrary::kFewest, std::size_t{20000}));
     sub->add_option("--seed", prior.seed, "of the draws");
     sub->add_option("--fits", prior.fits, "files of published fits to add");
     sub->add_option("-o,--output", prior.output, "the file to write")->required();

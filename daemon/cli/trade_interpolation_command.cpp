@@ -26,16 +26,22 @@ using proc::RegionPart;
 std::string shown(double fraction) {
     if (std::isnan(fraction)) return "";
     const double percent = 100 * fraction;
-    return fixed(percent, percent < 0.1 ? 3 : percent < 10 ? 2 : percent < 1000 ? 0 : 0);
+    return fixed(percent, percent < 0.1 ? 3 : percent < 10 ? 2 : 0);
 }
 
+/// Median and worst, and of how many materials where a method refuses some.
 std::string both(const std::vector<InterpolationRow>& rows,
                  const std::string& method,
                  bool inFamily,
                  std::size_t region,
                  RegionPart part) {
     const auto sum = proc::summaryOf(rows, method, inFamily, region, part);
-    return std::isnan(sum.median) ? "" : shown(sum.median) + " (" + shown(sum.worst) + ")";
+    if (sum.answered == 0) return "";
+    std::string text = shown(sum.median) + " (" + shown(sum.worst) + ")";
+    if (sum.answered < sum.materials) {
+        text += ", " + std::to_string(sum.answered) + " of " + std::to_string(sum.materials);
+    }
+    return text;
 }
 
 Rows summaryRows(const std::vector<InterpolationRow>& rows, bool inFamily) {

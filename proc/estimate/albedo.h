@@ -72,7 +72,7 @@ struct MeanAlbedoOptions {
 };
 
 /// Over theta_i by a Gauss-Kronrod rule in cos(theta_i), halved where it errs most. The error bound
-/// holds both integrals'.
+/// holds both integrals', and so does what has converged. Asks on all cores: `of` must stand that.
 [[nodiscard]] Albedo meanAlbedo(const Scatterer& of, const MeanAlbedoOptions& options = {});
 
 }  // namespace gonio::proc

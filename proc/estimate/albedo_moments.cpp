@@ -13,15 +13,15 @@ AlbedoMoments momentsOf(const Answer& answer, double cosThetaOut, KnownUncertain
         if (!std::isfinite(f)) continue;
         moments.sum[AlbedoMoments::Light + band] = f;
         moments.sum[AlbedoMoments::Answered + band] = 1;
-        known.random = known.random && answer.uRandom.has_value();
-        known.systematic = known.systematic && answer.uSystematic.has_value();
-        if (answer.uSystematic) {
-            moments.sum[AlbedoMoments::Systematic + band] = answer.uSystematic->value[band];
-        }
-        if (answer.uRandom) {
-            const double u = answer.uRandom->value[band];
-            moments.sum[AlbedoMoments::Random + band] = u * u * cosThetaOut;
-        }
+        const auto of = [band](const std::optional<LedBands>& u) {
+            return u ? u->value[band] : std::numeric_limits<double>::quiet_NaN();
+        };
+        const double random = of(answer.uRandom);
+        const double systematic = of(answer.uSystematic);
+        known.random = known.random && !std::isnan(random);
+        known.systematic = known.systematic && !std::isnan(systematic);
+        moments.sum[AlbedoMoments::Systematic + band] = systematic;
+        moments.sum[AlbedoMoments::Random + band] = random * random * cosThetaOut;
     }
     return moments;
 }

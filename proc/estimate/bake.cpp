@@ -71,7 +71,7 @@ public:
     }
 
     /// Relative, of the worst band in the middle of each cell: the interpolated value there is the
-    /// mean of the eight corners. NaN where there is nothing to compare.
+    /// mean of the eight corners. Of bands whose f is not 0; NaN where there is none to compare.
     [[nodiscard]] std::vector<float> errors(const std::vector<Stored>& values) const {
         const BoxResolution cells = cellCount();
         std::vector<float> all(cells.nodes());
@@ -83,8 +83,11 @@ public:
         return all;
     }
 
-    /// Root mean square of the errors of the cells that meet at a node.
-    [[nodiscard]] float errorAtNode(std::size_t node, const std::vector<float>& errors) const {
+    /// Root mean square of the errors of the cells that meet at a node; `unknown` where none is
+    /// known.
+    [[nodiscard]] float errorAtNode(std::size_t node,
+                                    const std::vector<float>& errors,
+                                    float unknown) const {
         const BoxResolution cells = cellCount();
         const Corner at(node, count_);
         double squares = 0;
@@ -101,7 +104,7 @@ public:
             squares += error * error;
             ++known;
         }
-        return known == 0 ? 0 : static_cast<float>(std::sqrt(squares / known));
+        return known == 0 ? unknown : static_cast<float>(std::sqrt(squares / known));
     }
 
 private:
@@ -133,6 +136,7 @@ private:
         const LedBands carried = carrier_ != nullptr ? carrier_->answer(pair).f : LedBands::all(1);
         double worst = kNan;
         for (std::size_t band = 0; band < 3; ++band) {
+            if (truth.value[band] == 0) continue;
             double mean = 0;
             for (int corner = 0; corner < 8; ++corner) {
                 mean += values[numberOf(count_,
@@ -165,14 +169,21 @@ Number numberFrom(float value) {
 template <class Number>
 std::vector<BakedNode<Number>> nodesOf(const Baking& baking,
                                        const std::vector<Stored>& values,
-                                       const std::vector<float>& errors) {
+                                       const std::vector<float>& errors,
+                                       const BakeReport& report) {
+    // What is not known is taken as the worst, and what a half cannot hold as the most it can.
+    const auto worst = static_cast<float>(report.worstError);
+    const auto errorAt = [&](std::size_t node) {
+        const float error = baking.errorAtNode(node, errors, worst) / kErrorUnit;
+        return std::min(error, static_cast<float>(kLargestHalf));
+    };
     std::vector<BakedNode<Number>> nodes;
     nodes.reserve(values.size());
     for (std::size_t i = 0; i < values.size(); ++i) {
         nodes.push_back({numberFrom<Number>(values[i][0]),
                          numberFrom<Number>(values[i][1]),
                          numberFrom<Number>(values[i][2]),
-                         numberFrom<Number>(baking.errorAtNode(i, errors) / kErrorUnit)});
+                         numberFrom<Number>(errorAt(i))});
     }
     return nodes;
 }
@@ -216,15 +227,11 @@ BakeReport reportOf(const Scatterer& truth,
         const float least = std::min({value[0], value[1], value[2]});
         if (logarithms && least <= static_cast<float>(kLeastLog2)) ++report.notHeld;
     }
-    double squares = 0;
-    std::size_t known = 0;
     for (const float error : errors) {
-        if (std::isnan(error)) continue;
-        squares += error * error;
-        report.worstError = std::max(report.worstError, static_cast<double>(error));
-        ++known;
+        if (!std::isnan(error)) {
+            report.worstError = std::max(report.worstError, static_cast<double>(error));
+        }
     }
-    if (known > 0) report.rmsError = std::sqrt(squares / static_cast<double>(known));
     report.asymmetry = asymmetryOf(truth);
     return report;
 }
@@ -266,9 +273,9 @@ Result<BakedTable> bakeTable(const Scatterer& truth,
     const BakeReport report = reportOf(truth, values, errors, carrier == nullptr);
     BakedNodes nodes;
     if (options.storage == TableStorage::Half) {
-        nodes = nodesOf<Half16>(baking, values, errors);
+        nodes = nodesOf<Half16>(baking, values, errors, report);
     } else {
-        nodes = nodesOf<float>(baking, values, errors);
+        nodes = nodesOf<float>(baking, values, errors, report);
     }
     return BakedTable(axes, std::move(nodes), std::move(carrier), report);
 }

@@ -30,7 +30,8 @@ enum class TableStorage {
 };
 
 /// A node's four numbers. The relative error is held in units of kErrorUnit: as it is, a half would
-/// hold it as a denormal, which processors multiply slowly.
+/// hold it as a denormal, which processors multiply slowly. It ends at 64, the most that a half
+/// then holds; where there was nothing to learn it from, it is the table's worst.
 template <class Number>
 struct BakedNode {
     Number r{}, g{}, b{}, error{};
@@ -41,8 +42,7 @@ using BakedNodes = std::variant<std::vector<BakedNode<float>>, std::vector<Baked
 struct BakeReport {
     std::size_t unanswered = 0;  ///< nodes
     std::size_t notHeld = 0;     ///< nodes whose f was not positive, without a carrier
-    double worstError = 0;       ///< relative, over the middles of all cells and all bands
-    double rmsError = 0;
+    double worstError = 0;       ///< relative, over the middles of all cells, bands of f not 0
     /// Largest relative difference when a pair is turned about the normal or swapped, of a few.
     double asymmetry = 0;
 };

@@ -13,7 +13,8 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 struct Sums {
-    double weight = 0, relative = 0, difference = 0, reference = 0;
+    double relative = 0, relativeWeight = 0;
+    double difference = 0, reference = 0;
     double logs = 0, logWeight = 0;
     double cosine = 0, cosineReference = 0;
     double within = 0, overU = 0;
@@ -22,8 +23,10 @@ struct Sums {
     void add(double a, double b, double weightOfCell, double cosThetaO, std::optional<double> u) {
         const double off = a - b;
         ++values;
-        weight += weightOfCell;
-        if (b != 0) relative += weightOfCell * (off / b) * (off / b);
+        if (b != 0) {
+            relative += weightOfCell * (off / b) * (off / b);
+            relativeWeight += weightOfCell;
+        }
         difference += weightOfCell * off;
         reference += weightOfCell * b;
         cosine += weightOfCell * off * off * cosThetaO * cosThetaO;
@@ -48,18 +51,22 @@ std::optional<double> combinedU(const Answer& a, const Answer& b, Band band) {
     return std::hypot(one.value_or(0), other.value_or(0));
 }
 
+/// NaN over 0.
+double over(double sum, double weight) { return weight != 0 ? sum / weight : kNan; }
+
 Difference differenceOf(const Sums& sums) {
-    const double stated = static_cast<double>(sums.stated);
+    const auto stated = static_cast<double>(sums.stated);
     return {.incidence = {},
             .region = {},
             .values = sums.values,
             .oneOnly = sums.oneOnly,
-            .relativeRms = std::sqrt(sums.relative / sums.weight),
-            .relativeMean = sums.difference / sums.reference,
-            .logRms = sums.logWeight > 0 ? std::sqrt(sums.logs / sums.logWeight) : kNan,
-            .cosineRms = std::sqrt(sums.cosine / sums.cosineReference),
-            .within2u = sums.stated > 0 ? sums.within / stated : kNan,
-            .meanSquareOverU = sums.stated > 0 ? sums.overU / stated : kNan};
+            .stated = sums.stated,
+            .relativeRms = std::sqrt(over(sums.relative, sums.relativeWeight)),
+            .relativeMean = over(sums.difference, sums.reference),
+            .logRms = std::sqrt(over(sums.logs, sums.logWeight)),
+            .cosineRms = std::sqrt(over(sums.cosine, sums.cosineReference)),
+            .within2u = over(sums.within, stated),
+            .meanSquareOverU = over(sums.overU, stated)};
 }
 
 /// Both surfaces at every cell of one incidence.
@@ -135,11 +142,10 @@ Agreement agreementOf(const std::vector<Difference>& differences) {
     double within = 0;
     for (const Difference& row : differences) {
         if (row.region != compareRegions().front().name) continue;
-        const auto count = static_cast<double>(row.values);
-        values += count;
-        if (std::isnan(row.within2u)) continue;
-        stated += count;
-        within += count * row.within2u;
+        values += static_cast<double>(row.values);
+        if (row.stated == 0) continue;
+        stated += static_cast<double>(row.stated);
+        within += static_cast<double>(row.stated) * row.within2u;
     }
     if (stated < values / 2 || values == 0) return Agreement::Unknown;
     return within >= kShare * stated ? Agreement::Agree : Agreement::Disagree;

@@ -30,12 +30,13 @@ struct Difference {
     Band band = Band::R;
     std::size_t values = 0;      ///< where both answer
     std::size_t oneOnly = 0;     ///< where one of them does
-    double relativeRms = 0;      ///< of (a - b) / b
-    double relativeMean = 0;     ///< of (a - b) over that of b
+    std::size_t stated = 0;      ///< of the values: where at least one of them has a u above 0
+    double relativeRms = 0;      ///< of (a - b) / b where b is not 0; NaN: nowhere
+    double relativeMean = 0;     ///< of (a - b) over that of b; NaN: that is 0
     double logRms = 0;           ///< of ln(a / b), where both are positive
-    double cosineRms = 0;        ///< of (a - b) cos(theta_o) over that of b cos(theta_o)
-    double within2u = 0;         ///< share of values within twice the combined u; NaN: no u
-    double meanSquareOverU = 0;  ///< of (a - b) / u; NaN: no u
+    double cosineRms = 0;        ///< of (a - b) cos(theta_o) over that of b cos(theta_o); or NaN
+    double within2u = 0;         ///< share of `stated` within twice the combined u; NaN: none
+    double meanSquareOverU = 0;  ///< of (a - b) / u over `stated`; NaN: none
 };
 
 /// One row per incidence, region and band (one band where both have one) that has values.

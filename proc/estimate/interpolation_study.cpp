@@ -99,6 +99,15 @@ struct Tally {
     }
 };
 
+std::vector<std::size_t> cellsOf(const Asked& asked) {
+    std::vector<std::size_t> cells;
+    for (std::size_t cell = 0; cell < CellGrid::count(); ++cell) {
+        const int row = CellGrid::place(cell).row;
+        if (row >= asked.firstRow && row < asked.lastRow) cells.push_back(cell);
+    }
+    return cells;
+}
+
 }  // namespace
 
 SampleSet syntheticSample(const Scatterer& truth, const SyntheticOptions& options) {
@@ -110,15 +119,36 @@ SampleSet syntheticSample(const Scatterer& truth, const SyntheticOptions& option
     return set;
 }
 
+std::vector<LightView> askedPairs(const Asked& asked) {
+    const std::vector<std::size_t> cells = cellsOf(asked);
+    std::vector<LightView> pairs;
+    for (const Radians incidence : asked.incidences) {
+        for (std::size_t i = 0; i < cells.size(); i += static_cast<std::size_t>(asked.stride)) {
+            pairs.push_back({.in = lightAt(incidence), .out = CellGrid::centre(cells[i])});
+        }
+    }
+    return pairs;
+}
+
+double microsecondsPerAnswer(const Scatterer& estimator,
+                             const std::vector<LightView>& pairs,
+                             const Clock& clock) {
+    if (pairs.empty()) return 0;
+    std::vector<double> kept(pairs.size());  // so that no answer can be left out
+    const Stopwatch watch(clock);
+    parallelFor(pairs.size(), [&](IndexRange range) {
+        for (std::size_t i = range.begin; i < range.end; ++i) {
+            kept[i] = estimator.answer(pairs[i]).f[Band::R];
+        }
+    });
+    return watch.elapsed().count() / static_cast<double>(pairs.size()) * 1e6;
+}
+
 RegionError errorOf(const Scatterer& estimator, const Scatterer& truth, const Asked& asked) {
     Tally tally;
     for (const Radians incidence : asked.incidences) {
         const Direction wi = lightAt(incidence);
-        std::vector<std::size_t> cells;
-        for (std::size_t cell = 0; cell < CellGrid::count(); ++cell) {
-            const int row = CellGrid::place(cell).row;
-            if (row >= asked.firstRow && row < asked.lastRow) cells.push_back(cell);
-        }
+        const std::vector<std::size_t> cells = cellsOf(asked);
         std::vector<LedBands> true_(cells.size());
         std::vector<Answer> answers(cells.size());
         parallelFor(cells.size(), [&](IndexRange range) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "proc/core/scatterer.h"
+#include "proc/core/stopwatch.h"
 #include "proc/estimate/study_materials.h"
 #include "proc/table/sample_set.h"
 
@@ -41,6 +42,14 @@ struct Asked {
     int lastRow = 75;  ///< exclusive
     int stride = 1;    ///< every how many cells
 };
+
+/// The pairs at which an estimator is asked: every stride-th cell of the rows, at each incidence.
+[[nodiscard]] std::vector<LightView> askedPairs(const Asked& asked);
+
+/// Wall time of an answer in microseconds, on all cores, over these pairs. 0 for no pairs.
+[[nodiscard]] double microsecondsPerAnswer(const Scatterer& estimator,
+                                           const std::vector<LightView>& pairs,
+                                           const Clock& clock);
 
 /// All bands, all incidences together.
 [[nodiscard]] RegionError errorOf(const Scatterer& estimator,

@@ -8,7 +8,6 @@
 #include "proc/estimate/coverage.h"
 #include "proc/estimate/sample_estimator.h"
 #include "proc/estimate/seed004.h"
-#include "proc/table/scattered_of.h"
 
 namespace gonio::proc {
 namespace {
@@ -43,14 +42,6 @@ Made plain(const SampleSet& set, const std::string& name) {
     return method ? std::make_shared<const Plain>(std::move(*method)) : nullptr;
 }
 
-Made ofTheThesis(const SampleSet& set, SeedInterpolator interpolator) {
-    const auto points = scatteredOf(set);
-    if (!points) return nullptr;
-    auto made = makeSeed004(
-        points->set, {.interpolator = interpolator, .gridFilledBy = SeedInterpolator::AxisLinear});
-    return made ? Made(std::move(*made)) : nullptr;
-}
-
 /// The method, and what it chose.
 struct Method {
     Made scatterer;
@@ -58,7 +49,10 @@ struct Method {
 };
 
 Method make(const std::string& name, const SampleSet& set) {
-    if (const auto seed = seedInterpolatorNamed(name)) return {ofTheThesis(set, *seed), ""};
+    if (const auto seed = seed004Named(name)) {
+        auto chain = makeSeed004(set, *seed);
+        return {chain ? Made(std::move(*chain)) : nullptr, ""};
+    }
     if (Made baseline = plain(set, name)) return {std::move(baseline), ""};
     auto made = SampleEstimator::over(set, {.method = name, .prior = standardPrior});
     if (!made) return {};
@@ -105,14 +99,9 @@ InterpolationRow rowOf(const std::string& name,
             row.errors.push_back({nan, nan, nan, 1});
             continue;
         }
-        const Stopwatch asking(clock);
         row.errors.push_back(errorOf(*method.scatterer, *material.truth, asked));
-        if (row.errors.size() == 1) {
-            constexpr double kCells = 15287;  // to 75 degrees
-            const double answers =
-                kCells * static_cast<double>(asked.incidences.size()) / asked.stride;
-            row.microseconds = asking.elapsed().count() / answers * 1e6;
-        }
+        if (row.errors.size() > 1) continue;
+        row.microseconds = microsecondsPerAnswer(*method.scatterer, askedPairs(asked), clock);
     }
     return row;
 }
@@ -193,17 +182,20 @@ InterpolationSummary summaryOf(const std::vector<InterpolationRow>& rows,
                                bool inFamily,
                                std::size_t region,
                                RegionPart part) {
+    InterpolationSummary summary;
     std::vector<double> errors;
     for (const InterpolationRow& row : rows) {
         if (row.method != method || row.inFamily != inFamily) continue;
+        ++summary.materials;
         const RegionError& error = row.errors[region];
         const double value = part == RegionPart::Lobe ? error.lobe : error.hemisphere;
         if (!std::isnan(value)) errors.push_back(value);
     }
-    const double nan = std::numeric_limits<double>::quiet_NaN();
-    if (errors.empty()) return {nan, nan};
-    const double worst = *std::max_element(errors.begin(), errors.end());
-    return {median(errors), worst};
+    summary.answered = errors.size();
+    if (errors.empty()) return summary;
+    summary.worst = *std::max_element(errors.begin(), errors.end());
+    summary.median = median(errors);
+    return summary;
 }
 
 }  // namespace gonio::proc

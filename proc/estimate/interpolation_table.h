@@ -3,6 +3,7 @@
 // extrapolation are worth, and what each method costs.
 
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -27,7 +28,7 @@ struct InterpolationRow {
     std::string chosen;               ///< what `auto` took between and beyond; empty for the others
     std::vector<RegionError> errors;  ///< by region
     double makeSeconds = 0;           ///< from the sample to the first answer
-    double microseconds = 0;          ///< per answer of the first region, on all cores
+    double microseconds = 0;          ///< wall, per answer of the first region alone, on all cores
 };
 
 struct InterpolationOptions {
@@ -59,8 +60,10 @@ struct LobeCurve {
 
 /// Of a method over the materials in the family or outside: the median and the worst of a region.
 struct InterpolationSummary {
-    double median = 0;
-    double worst = 0;
+    double median = std::numeric_limits<double>::quiet_NaN();
+    double worst = std::numeric_limits<double>::quiet_NaN();
+    std::size_t answered = 0;   ///< materials that the two are of: some methods refuse some
+    std::size_t materials = 0;  ///< in all
 };
 enum class RegionPart {
     Hemisphere,

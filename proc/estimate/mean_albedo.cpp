@@ -3,6 +3,7 @@
 #include <limits>
 #include <vector>
 
+#include "proc/core/parallel.h"
 #include "proc/estimate/albedo.h"
 #include "proc/solve/gauss_kronrod.h"
 
@@ -74,11 +75,13 @@ public:
             for (std::size_t band = 0; band < 3; ++band) error[band] += belt.error[band];
         }
         Albedo mean;
+        mean.converged = true;
         for (std::size_t band = 0; band < 3; ++band) {
             mean.bands[band] = bandOf(total.bands[band], error[band]);
+            // That of both integrals. A band without an answer has none, and nothing to converge.
+            if (mean.bands[band].errorBound > options_.tolerance) mean.converged = false;
         }
         mean.evaluations = evaluations_;
-        mean.converged = this->error() <= options_.tolerance;
         return mean;
     }
 
@@ -113,26 +116,43 @@ private:
         }
     }
 
-    /// The mean over azimuths at one cos(theta_i).
-    [[nodiscard]] IncidenceSum at(double mu) {
-        IncidenceSum mean;
-        const Radians theta(std::atan2(std::sqrt((1 - mu) * (1 + mu)), mu));
-        const int azimuths = std::max(1, options_.azimuths);
-        for (int k = 0; k < azimuths; ++k) {
-            const Direction wi = Direction::fromSpherical(theta, Radians(2 * kPi * k / azimuths));
-            addOne(mean, 1.0 / azimuths, directionalAlbedo(of_, wi, options_.directional));
-        }
-        ++incidences_;
-        return mean;
+    /// All azimuths of one cos(theta_i) after the other, on all cores: an answer may take a
+    /// millisecond.
+    [[nodiscard]] std::vector<Albedo> directional(const std::vector<double>& mus) const {
+        const std::size_t azimuths = azimuthCount();
+        std::vector<Albedo> all(mus.size() * azimuths);
+        parallelFor(all.size(), [&](IndexRange range) {
+            for (std::size_t i = range.begin; i < range.end; ++i) {
+                const double mu = mus[i / azimuths];
+                const Radians theta(std::atan2(std::sqrt((1 - mu) * (1 + mu)), mu));
+                const double turn =
+                    static_cast<double>(i % azimuths) / static_cast<double>(azimuths);
+                const Direction wi = Direction::fromSpherical(theta, Radians(2 * kPi * turn));
+                all[i] = directionalAlbedo(of_, wi, options_.directional);
+            }
+        });
+        return all;
+    }
+    [[nodiscard]] std::size_t azimuthCount() const {
+        return static_cast<std::size_t>(std::max(1, options_.azimuths));
     }
 
     /// (1 / pi) a cos dw over all azimuths is 2 a mu dmu.
     [[nodiscard]] Belt integrated(double low, double high) {
         Belt belt{low, high, {}, {}};
         IncidenceSum coarse;
-        for (const KronrodNode& node : gaussKronrod()) {
-            const double mu = low + (high - low) * node.x;
-            const IncidenceSum here = at(mu);
+        std::vector<double> mus;
+        for (const KronrodNode& node : gaussKronrod()) mus.push_back(low + (high - low) * node.x);
+        const std::vector<Albedo> all = directional(mus);
+        const std::size_t azimuths = azimuthCount();
+        incidences_ += mus.size();
+        for (std::size_t i = 0; i < mus.size(); ++i) {
+            const KronrodNode& node = gaussKronrod()[i];
+            const double mu = mus[i];
+            IncidenceSum here;
+            for (std::size_t k = 0; k < azimuths; ++k) {
+                addOne(here, 1.0 / static_cast<double>(azimuths), all[i * azimuths + k]);
+            }
             belt.value.add(2 * mu * (high - low) * node.kronrod, here);
             coarse.add(2 * mu * (high - low) * node.gauss, here);
         }

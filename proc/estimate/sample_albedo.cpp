@@ -12,17 +12,17 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-BandAlbedo summed(const CellSamples& cells, std::size_t& present) {
+BandAlbedo summed(const CellSamples& cells, std::size_t& summedCells) {
     BandAlbedo sum;
     double random = 0, systematic = 0, answered = 0;
     for (std::size_t cell = 0; cell < cells.size(); ++cell) {
-        if (!cells.present(cell) || !std::isfinite(cells.f[cell])) continue;
+        if (!cells.usable(cell) || !std::isfinite(cells.f[cell])) continue;
         const double projected = projectedSolidAngle(cell);
         sum.value += projected * cells.f[cell];
         random += std::pow(projected * cells.uRandom[cell], 2);
         systematic += projected * cells.uSystematic[cell];
         answered += projected;
-        ++present;
+        ++summedCells;
     }
     sum.missing = std::clamp(1 - answered / kPi, 0.0, 1.0);
     if (answered > 0) {

@@ -2,10 +2,11 @@
 // The albedo of a measured sample, summed over its cells: with P the exact projected solid angle of
 // a cell (the integral of cos(theta_o) over it; all cells together hold pi),
 //     a = sum of f P,  u_random^2 = sum of (u_random P)^2,  u_systematic = sum of u_systematic P:
-// cells are independent in what is random and of one mind in what is not. Cells without a value
-// (beyond 75 degrees, behind the beam) add nothing, and `missing` says what share of pi they hold:
-// the value is a lower bound of a surface whose f is not negative there. That f is a cell's mean
-// weighted by solid angle, not by projected solid angle, leaves 1e-5 of a smooth f's albedo.
+// cells are independent in what is random and of one mind in what is not. Cells without a usable
+// value (beyond 75 degrees, behind the beam, saturated) add nothing, and `missing` says what share
+// of pi they hold: the value is a lower bound of a surface whose f is not negative there. That f is
+// a cell's mean weighted by solid angle, not by projected solid angle, leaves 1e-5 of a smooth f's
+// albedo.
 
 #include <vector>
 
@@ -18,7 +19,7 @@ namespace gonio::proc {
 [[nodiscard]] double projectedSolidAngle(std::size_t cell);
 
 /// Of one LED, all bands; a band that was not measured is NaN with `missing` 1. There is no
-/// quadrature between cells: the error bound is 0, `evaluations` counts the cells that are present.
+/// quadrature between cells: the error bound is 0, `evaluations` counts the cells that are summed.
 [[nodiscard]] Albedo directionalAlbedo(const LedTable& led);
 
 /// Of a whole sample, (1 / pi) integral of a cos(theta_i) dwi = integral of a d(sin^2(theta_i)),

@@ -1,9 +1,9 @@
 #include "proc/estimate/scattered_estimator.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "proc/core/median.h"
 #include "proc/estimate/carrier_fit.h"
@@ -12,15 +12,13 @@
 namespace gonio::proc {
 namespace {
 
-using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Index = Eigen::Index;
-using Place = Eigen::Vector3d;
-using Process = ScatteredEstimator::Process;
 
 /// Of the median |f|, added to f and the model before their ratio is taken: what is far darker is
 /// interpolated as a difference.
 constexpr double kFloorShare = 0.1;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// But for a turn of both about the normal.
 bool samePair(const LightView& a, const LightView& b) {
@@ -30,126 +28,6 @@ bool samePair(const LightView& a, const LightView& b) {
     return (one.in.vector() - other.in.vector()).norm() < kSame &&
            (one.out.vector() - other.out.vector()).norm() < kSame;
 }
-
-/// Coordinates of a pair under a process: distances of such places are Euclidean.
-Place placeOf(const Process& process, const LightView& pair) {
-    const LightView straight = withLightAtZero(pair);
-    const auto rho = [&](const Direction& w) {
-        const double disc = std::sqrt(2.0) * std::sin(w.theta().value() / 2);
-        return disc * (1 + process.grazing * std::pow(disc, 6));
-    };
-    const double in = rho(straight.in);
-    const double out = rho(straight.out);
-    const double phi = straight.out.phi().value();
-    // The mirror direction lies at x = -in.
-    const double x = out * std::cos(phi) + (process.fromMirror ? in : 0);
-    return Place(std::sqrt(process.incidenceWeight) * in, x, std::abs(out * std::sin(phi))) /
-           process.length;
-}
-
-double matern(double distance) {
-    const double r = std::sqrt(5.0) * distance;
-    return (1 + r + r * r / 3) * std::exp(-r);
-}
-
-/// Correlation of two pairs; of one with itself it is 1. All four ways count: exchanging light and
-/// view does not keep distances.
-double alike(const KrigingPlace& a, const KrigingPlace& b) {
-    const auto of = [](const Place& p, const Place& q) { return matern((p - q).norm()); };
-    return (of(a.straight, b.straight) + of(a.straight, b.exchanged) + of(a.exchanged, b.straight) +
-            of(a.exchanged, b.exchanged)) /
-           (a.scale * b.scale);
-}
-
-KrigingPlace krigingPlace(const Process& process, const LightView& pair) {
-    KrigingPlace place{
-        placeOf(process, pair), placeOf(process, {.in = pair.out, .out = pair.in}), 1};
-    place.scale = std::sqrt(2 + 2 * matern((place.straight - place.exchanged).norm()));
-    return place;
-}
-
-MatrixXd correlations(const std::vector<KrigingPlace>& at) {
-    const auto n = static_cast<Index>(at.size());
-    MatrixXd matrix(n, n);
-    for (Index i = 0; i < n; ++i) {
-        for (Index k = 0; k <= i; ++k) {
-            matrix(i, k) = matrix(k, i) =
-                alike(at[static_cast<std::size_t>(i)], at[static_cast<std::size_t>(k)]);
-        }
-    }
-    return matrix;
-}
-
-/// Each value predicted from the others [Rasmussen2006, eqs. 5.10 to 5.12], the process's variance
-/// being the one that makes them likeliest.
-struct LeftOut {
-    double logLikelihood = -std::numeric_limits<double>::infinity();
-    double variance = 0;
-};
-
-LeftOut leaveOneOut(MatrixXd matrix, double noise, const VectorXd& y) {
-    matrix.diagonal().array() += noise;
-    const Eigen::LLT<MatrixXd> factor(matrix);
-    if (factor.info() != Eigen::Success) return {};
-    const Index n = y.size();
-    const VectorXd inverse = factor.solve(MatrixXd::Identity(n, n)).diagonal();
-    const VectorXd off = factor.solve(y).cwiseQuotient(inverse);
-    LeftOut result;
-    result.variance = off.array().square().matrix().cwiseProduct(inverse).mean();
-    if (!(result.variance > 0)) return {};
-    result.logLikelihood = 0.5 * inverse.array().log().sum() -
-                           0.5 * static_cast<double>(n) * std::log(result.variance);
-    return result;
-}
-
-/// What is known of a band, to learn the process from.
-class Learning {
-public:
-    Learning(std::vector<LightView> pairs, VectorXd y)
-        : pairs_(std::move(pairs)), y_(std::move(y)) {}
-
-    /// One property after the other, twice: the best of its values with the others held.
-    [[nodiscard]] Process best() {
-        for (int pass = 0; pass < 2; ++pass) {
-            among({0.06, 0.12, 0.25, 0.5, 1, 2, 4}, &Process::length);
-            among({0, 1, 3}, &Process::grazing);
-            among({0.25, 1, 4}, &Process::incidenceWeight);
-            for (const bool fromMirror : {false, true}) {
-                Process tried = best_;
-                tried.fromMirror = fromMirror;
-                attempt(tried);
-            }
-        }
-        return best_;
-    }
-
-private:
-    void among(std::initializer_list<double> values, double Process::*property) {
-        for (const double value : values) {
-            Process tried = best_;
-            tried.*property = value;
-            attempt(tried);
-        }
-    }
-    void attempt(Process tried) {
-        std::vector<KrigingPlace> at;
-        for (const LightView& pair : pairs_) at.push_back(krigingPlace(tried, pair));
-        const MatrixXd matrix = correlations(at);
-        for (const double noise : {1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1.0}) {
-            const LeftOut result = leaveOneOut(matrix, noise, y_);
-            if (!(result.logLikelihood > most_)) continue;
-            most_ = result.logLikelihood;
-            tried.noise = noise;
-            tried.variance = result.variance;
-            best_ = tried;
-        }
-    }
-
-    std::vector<LightView> pairs_;
-    VectorXd y_;
-    Process best_;
-    double most_ = -std::numeric_limits<double>::infinity();
-};
 
 std::vector<LightView> pairsOf(const BrdfData& data) {
     std::vector<LightView> pairs;
@@ -172,62 +50,22 @@ Result<Carrier> carrierOf(const BrdfData& data, const std::vector<std::string>& 
     return Error{ErrorKind::Quality, "estimate: no model can be fitted to the samples"};
 }
 
-/// A few hundred of a band's samples, evenly.
-Process learned(const std::vector<KrigingSample>& samples) {
+/// The process of a few hundred of a band's samples, evenly taken.
+KrigingProcess learned(const std::vector<KrigingSample>& samples, const VectorXd& ratios) {
     constexpr std::size_t kMost = 300;
     const std::size_t stride = std::max<std::size_t>(1, (samples.size() + kMost - 1) / kMost);
     std::vector<LightView> pairs;
-    std::vector<double> y;
-    for (std::size_t i = 0; i < samples.size(); i += stride) {
-        pairs.push_back(samples[i].pair);
-        y.push_back(samples[i].ratio);
-    }
-    return Learning(std::move(pairs), Eigen::Map<VectorXd>(y.data(), static_cast<Index>(y.size())))
-        .best();
+    for (std::size_t i = 0; i < samples.size(); i += stride) pairs.push_back(samples[i].pair);
+    VectorXd taken(static_cast<Index>(pairs.size()));
+    for (Index i = 0; i < taken.size(); ++i) taken(i) = ratios(i * static_cast<Index>(stride));
+    return learnedProcess(pairs, taken);
 }
 
-/// The samples that resemble a place most.
-struct Near {
-    std::vector<std::size_t> sample;
-    VectorXd alike;
-};
-
-Near nearest(const std::vector<KrigingSample>& samples,
-             const KrigingPlace& here,
-             std::size_t count) {
-    std::vector<std::pair<double, std::size_t>> order(samples.size());
-    for (std::size_t i = 0; i < samples.size(); ++i) order[i] = {-alike(here, samples[i].place), i};
-    count = std::min(count, order.size());
-    std::partial_sort(
-        order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count), order.end());
-    Near near;
-    near.alike.resize(static_cast<Index>(count));
-    for (std::size_t i = 0; i < count; ++i) {
-        near.sample.push_back(order[i].second);
-        near.alike(static_cast<Index>(i)) = -order[i].first;
-    }
-    return near;
-}
-
-/// Of the ratio at a place.
-struct Kriged {
-    double ratio = 0;
-    double unknown = 1;  ///< share of the process's variance that the samples leave open
-};
-
-Kriged krige(const std::vector<KrigingSample>& samples, const Near& near, double noise) {
-    std::vector<KrigingPlace> at;
-    VectorXd y(near.alike.size());
-    for (std::size_t i = 0; i < near.sample.size(); ++i) {
-        const KrigingSample& sample = samples[near.sample[i]];
-        at.push_back(sample.place);
-        y(static_cast<Index>(i)) = sample.ratio;
-    }
-    MatrixXd matrix = correlations(at);
-    matrix.diagonal().array() += noise;
-    const Eigen::LLT<MatrixXd> factor(matrix);
-    return {near.alike.dot(factor.solve(y)),
-            std::max(0.0, 1 - near.alike.dot(factor.solve(near.alike)))};
+/// Empty where nothing is known in any band.
+std::optional<LedBands> ifKnown(const LedBands& u) {
+    const bool known =
+        std::any_of(u.value.begin(), u.value.end(), [](double v) { return !std::isnan(v); });
+    return known ? std::optional(u) : std::nullopt;
 }
 
 }  // namespace
@@ -243,17 +81,19 @@ Result<std::unique_ptr<const ScatteredEstimator>> ScatteredEstimator::over(
     const Result<Carrier> carrier = carrierOf(data, options.carriers);
     if (!carrier) return carrier.error();
     std::unique_ptr<ScatteredEstimator> made(new ScatteredEstimator(*carrier, data.bands));
-    made->neighbours_ = std::max<std::size_t>(1, options.neighbours);
     const std::vector<LightView> pairs = pairsOf(data);
     for (std::size_t b = 0; b < data.bandsUsed(); ++b)
-        made->bandsOf_[b] = made->learn(data, pairs, b);
+        made->bandsOf_[b] = made->learn(
+            data, pairs, {.band = b, .neighbours = std::max<std::size_t>(1, options.neighbours)});
     return std::unique_ptr<const ScatteredEstimator>(std::move(made));
 }
 
 ScatteredEstimator::OneBand ScatteredEstimator::learn(const BrdfData& data,
                                                       const std::vector<LightView>& pairs,
-                                                      std::size_t band) const {
+                                                      const Learning& what) const {
+    const std::size_t band = what.band;
     OneBand one;
+    std::vector<double> ratios;
     std::vector<double> sizes;
     for (const FitRow& row : data.rows) {
         if (!std::isnan(row.f[band])) sizes.push_back(std::abs(row.f[band]));
@@ -264,15 +104,20 @@ ScatteredEstimator::OneBand ScatteredEstimator::learn(const BrdfData& data,
         const FitRow& row = data.rows[i];
         if (std::isnan(row.f[band])) continue;
         const double model = carrier_.at(pairs[i]).value[band];
+        ratios.push_back((row.f[band] + one.floor) / (model + one.floor) - 1);
         one.samples.push_back({.pair = pairs[i],
-                               .place = {},
-                               .ratio = (row.f[band] + one.floor) / (model + one.floor) - 1,
                                .f = row.f[band],
-                               .uRandom = row.uRandom[band],
-                               .uSystematic = row.uSystematic[band]});
+                               .uRandom = data.uKnown ? row.uRandom[band] : kNan,
+                               .uSystematic = data.uKnown ? row.uSystematic[band] : kNan});
     }
-    one.process = learned(one.samples);
-    for (KrigingSample& sample : one.samples) sample.place = krigingPlace(one.process, sample.pair);
+    const VectorXd values =
+        Eigen::Map<const VectorXd>(ratios.data(), static_cast<Index>(ratios.size()));
+    one.process = learned(one.samples, values);
+    std::vector<KrigingPlace> places;
+    for (const KrigingSample& sample : one.samples) {
+        places.push_back(krigingPlace(one.process, sample.pair));
+    }
+    one.kriging = LocalKriging(one.process, std::move(places), values, what.neighbours);
     one.commonRelative = commonRelative(data, band);
     return one;
 }
@@ -282,21 +127,26 @@ ScatteredEstimator::BandAnswer ScatteredEstimator::bandAnswer(const LightView& p
     const OneBand& one = bandsOf_[band];
     if (one.samples.empty()) return {};
     const KrigingPlace here = krigingPlace(one.process, pair);
-    const Near near = nearest(one.samples, here, neighbours_);
-    for (const std::size_t i : near.sample) {
+    // A pair shares its place with its mirror image, both exchanged, and those measured again.
+    constexpr std::size_t kTwins = 16;
+    const std::vector<std::uint32_t> near = one.kriging.nearest(here, kTwins);
+    for (const std::uint32_t i : near) {
         const KrigingSample& sample = one.samples[i];
         if (!samePair(sample.pair, pair)) continue;
         return {sample.f, sample.uRandom, sample.uSystematic, Source::Measured};
     }
-    const Kriged kriged = krige(one.samples, near, one.process.noise);
+    const Kriged kriged = one.kriging.at(here, near.front());
     const double model = carrier_.at(pair).value[band] + one.floor;
-    const double f = (1 + kriged.ratio) * model - one.floor;
-    const double own = model * std::sqrt(one.process.variance * kriged.unknown);
+    const double f = (1 + kriged.value) * model - one.floor;
+    const auto deviation = [&](double share) {
+        return one.process.learned ? model * std::sqrt(one.process.variance * share) : kNan;
+    };
+    const double own = deviation(kriged.unknown);
     const double common = one.commonRelative * std::abs(f);
     constexpr double kMostUnknown = 0.5;
     return {f,
-            0,
-            std::hypot(own, common),
+            deviation(one.process.noise),
+            std::sqrt(own * own + common * common),
             kriged.unknown > kMostUnknown ? Source::Model : Source::Interpolated};
 }
 
@@ -308,8 +158,9 @@ Answer ScatteredEstimator::answer(const LightView& pair) const {
     answer.uRandom = LedBands{};
     answer.uSystematic = LedBands{};
     answer.source = Source::Measured;
+    BandAnswer one;
     for (const Band band : kBands) {
-        const BandAnswer one = bandAnswer(pair, bands_ == BandCount::One ? 0 : index(band));
+        if (band == Band::R || bands_ == BandCount::Three) one = bandAnswer(pair, index(band));
         answer.f[band] = one.f;
         (*answer.uRandom)[band] = one.uRandom;
         (*answer.uSystematic)[band] = one.uSystematic;
@@ -318,6 +169,8 @@ Answer ScatteredEstimator::answer(const LightView& pair) const {
             answer.source = one.source;
         }
     }
+    answer.uRandom = ifKnown(*answer.uRandom);
+    answer.uSystematic = ifKnown(*answer.uSystematic);
     switch (answer.source) {
         case Source::Measured: answer.flags.set(Flag::Measured); break;
         case Source::Model: answer.flags.set(Flag::Extrapolated).set(Flag::Model); break;

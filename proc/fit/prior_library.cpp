@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <sstream>
 
 #include "proc/core/number_text.h"
@@ -124,8 +125,12 @@ Result<PriorLibrary> PriorLibrary::read(const std::filesystem::path& file) {
         }
         library.specs.push_back(line);
     }
-    if (library.specs.empty()) {
-        return Error{ErrorKind::File, "prior library " + file.string() + ": no material in it"};
+    const std::size_t different = std::set(library.specs.begin(), library.specs.end()).size();
+    if (different < kFewest) {
+        return Error{ErrorKind::File,
+                     "prior library " + file.string() + ": " + std::to_string(different) +
+                         " materials that differ, wanted at least " + std::to_string(kFewest) +
+                         "; `gonio prior build -o FILE` writes a library"};
     }
     return library;
 }

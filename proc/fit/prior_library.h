@@ -19,15 +19,18 @@
 namespace gonio::proc {
 
 struct PriorLibrary {
+    static constexpr std::size_t kFewest = 10;  ///< materials that differ; fewer have no statistics
+
     std::vector<std::string> specs;
 
-    [[nodiscard]] static PriorLibrary standard(std::size_t count = 1500, std::uint64_t seed = 1);
+    [[nodiscard]] static PriorLibrary standard(std::size_t count, std::uint64_t seed = 1);
     /// Adds the fits of a file whose lobes a grid of one degree resolves: widths of at least 0.04.
     /// Returns how many; a File error as readPublishedFits().
     Result<std::size_t> addPublishedFits(const std::filesystem::path& file);
 
     [[nodiscard]] std::string text() const;
-    /// A File error names the line whose spec is no model.
+    /// A File error names the line whose spec is no model; likewise for fewer than kFewest
+    /// different specs.
     [[nodiscard]] static Result<PriorLibrary> read(const std::filesystem::path& file);
 };
 

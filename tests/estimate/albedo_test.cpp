@@ -184,6 +184,20 @@ TEST(MeanAlbedo, OfLambertAndGgxIsWithinItsBound) {
     }
 }
 
+TEST(MeanAlbedo, HasConvergedWhereItsWholeErrorBoundMeetsTheTolerance) {
+    // Each directional integral ends at a bound of some 1e-5, the same at all incidences: the outer
+    // integral alone would be right to 1e-6.
+    const Made seen([](const LightView& pair) {
+        return answerOf(pair.out.theta() < 75_deg ? 0.5 / kPi : kNan);
+    });
+    const AlbedoOptions few{.tolerance = 1e-9, .mostEvaluations = 5400};
+    for (const double tolerance : {1e-5, 1e-4, 1e-3, 1e-2, 0.1}) {
+        const Albedo mean =
+            meanAlbedo(seen, {.directional = few, .tolerance = tolerance, .mostIncidences = 15});
+        EXPECT_EQ(mean.converged, mean[Band::G].errorBound <= tolerance) << tolerance;
+    }
+}
+
 TEST(MeanAlbedo, AveragesOverAzimuthsWhereASurfaceHasAGrain) {
     // f grows with the azimuth of the light about x: the mean over it is known, one azimuth's is
     // not it.

@@ -174,6 +174,49 @@ TEST(BakedTable, TwiceItsUncertaintyHoldsNineteenOfTwentyErrors) {
     }
 }
 
+TEST(BakedTable, KnowsTheErrorOfOneBandWhereAnotherIsDark) {
+    const auto lobe = model("lambert,albedo=0.1+ggx,alpha=0.2,f0=0.5");
+    const Made green([&](const LightView& pair) {
+        Answer answer = lobe->answer(pair);
+        answer.f[Band::R] = 0;
+        return answer;
+    });
+    const BoxResolution coarse{8, 4, 3};
+    const BakedTable dark = std::move(*bakeTable(green, nullptr, {.resolution = coarse}));
+    const BakedTable bright = std::move(*bakeTable(*lobe, nullptr, {.resolution = coarse}));
+    EXPECT_GT(dark.report().worstError, 0.01);
+    EXPECT_EQ(dark.report().worstError, bright.report().worstError);
+    for (const LightView& pair : cosinePairs({50, 3})) {
+        EXPECT_DOUBLE_EQ(*dark.answer(pair).u(Band::G), *bright.answer(pair).u(Band::G));
+    }
+}
+
+TEST(BakedTable, TakesAnErrorThatItCannotKnowAsItsWorst) {
+    // Dark from 40 degrees between the normal and the half vector on: nothing to be relative to.
+    const auto lobe = model("lambert,albedo=0.1+ggx,alpha=0.2,f0=0.5");
+    const Made spot([&](const LightView& pair) {
+        const Direction half = *Direction::fromVector(pair.in.vector() + pair.out.vector());
+        return half.theta() < 40_deg ? lobe->answer(pair) : answerOf(0);
+    });
+    const BakedTable table = std::move(*bakeTable(spot, nullptr, {.resolution = {24, 4, 3}}));
+    const Answer answer = table.answer({tilted(70), tilted(72, 0.4)});
+    EXPECT_NEAR(*answer.u(Band::G) / answer.f[Band::G], table.report().worstError, 1e-3);
+    EXPECT_GT(table.report().worstError, 0.01);
+}
+
+TEST(BakedTable, HoldsErrorsThatAHalfCannot) {
+    // Some e^10 from one direction to the next.
+    const Made wild([](const LightView& pair) {
+        return answerOf(std::exp(10 * std::sin(1e5 * (pair.in.z() + pair.out.z()))));
+    });
+    const BakedTable table = std::move(
+        *bakeTable(wild, nullptr, {.resolution = {16, 8, 4}, .storage = TableStorage::Half}));
+    EXPECT_GT(table.report().worstError, 100);
+    for (const LightView& pair : cosinePairs({500, 3})) {
+        EXPECT_TRUE(std::isfinite(*table.answer(pair).u(Band::G)));
+    }
+}
+
 TEST(BakedTable, IsExactWhereTheTruthIsItsCarrier) {
     const std::string spec = "lambert,albedo=0.3+ggx,f0=0.04,alpha=0.1";
     const BakedTable table = baked({spec, spec}, {.resolution = {4, 3, 2}});

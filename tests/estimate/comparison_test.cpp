@@ -40,6 +40,47 @@ TEST(CompareSurfaces, AgreesWithinTheUncertaintiesAndNotBeyond) {
     EXPECT_EQ(agreementOf(compareSurfaces(tile(0.3), tile(0.33), {20_deg})), Agreement::Disagree);
 }
 
+/// The same f everywhere, with u in one direction alone.
+class Rarely final : public Scatterer {
+public:
+    explicit Rarely(double statedToDeg) : statedToDeg_(statedToDeg) {}
+    [[nodiscard]] Answer answer(const LightView& pair) const override {
+        Answer answer;
+        answer.f = LedBands::all(0.1);
+        if (pair.out.theta().degrees() < statedToDeg_) answer.uRandom = LedBands::all(0.01);
+        return answer;
+    }
+
+private:
+    double statedToDeg_;
+};
+
+TEST(CompareSurfaces, SaysNothingOfFewStatedValuesAndCountsThem) {
+    // 30 degrees are 13 % of the hemisphere, 80 are 83 %.
+    const auto few = compareSurfaces(Rarely(30), *lambert("0.31416"), {20_deg});
+    EXPECT_GT(few.front().stated, 0U);
+    EXPECT_LT(few.front().stated, few.front().values / 4);
+    EXPECT_EQ(few.front().within2u, 1);
+    EXPECT_EQ(agreementOf(few), Agreement::Unknown);
+    EXPECT_EQ(agreementOf(compareSurfaces(Rarely(80), *lambert("0.31416"), {20_deg})),
+              Agreement::Agree);
+}
+
+TEST(CompareSurfaces, LeavesZerosOutOfARatioAltogether) {
+    /// 0.1 on one side of the plane of incidence, 0 on the other.
+    class Half final : public Scatterer {
+        [[nodiscard]] Answer answer(const LightView& pair) const override {
+            Answer answer;
+            answer.f = LedBands::all(pair.out.y() > 0 ? 0.1 : 0);
+            return answer;
+        }
+    };
+    const auto rows = compareSurfaces(*lambert("0.628319"), Half(), {20_deg});
+    EXPECT_NEAR(rows.front().relativeRms, 1, 1e-5);  // 0.2 against 0.1
+    EXPECT_TRUE(
+        std::isnan(compareSurfaces(*lambert("0.3"), *lambert("0"), {20_deg}).front().relativeRms));
+}
+
 TEST(CompareSurfaces, CountsWhereOnlyOneAnswers) {
     const auto rows = compareSurfaces(tile(0.3), *lambert("0.3/0.6/0.9"), {20_deg});
     EXPECT_GT(rows.front().oneOnly, 4000U);  // beyond 75 degrees

@@ -75,6 +75,22 @@ TEST(SampleAlbedo, OfOneCellIsThatCell) {
     EXPECT_NEAR(albedo[Band::G].missing, 1 - projected / kPi, 1e-12);
 }
 
+TEST(SampleAlbedo, LeavesOutWhatIsBlockedOrSaturated) {
+    const Albedo clean = directionalAlbedo(uniform(0.3 / kPi));
+    LedTable led = uniform(0.3 / kPi);
+    for (auto& cells : led.bands) {
+        for (const auto& [cell, flag] :
+             {std::pair(500U, Flag::Blocked), std::pair(501U, Flag::Saturated)}) {
+            cells.f[cell] = 1e6;
+            cells.flags[cell].set(flag);
+        }
+    }
+    const Albedo albedo = directionalAlbedo(led);
+    const double out = projectedSolidAngle(500) + projectedSolidAngle(501);
+    EXPECT_NEAR(albedo[Band::R].value, clean[Band::R].value - 0.3 / kPi * out, 1e-12);
+    EXPECT_NEAR(albedo[Band::R].missing, clean[Band::R].missing + out / kPi, 1e-12);
+}
+
 TEST(SampleAlbedo, OfABandThatWasNotMeasuredIsNan) {
     LedTable led = uniform(0.3 / kPi);
     led.bands[1] = {};

@@ -85,7 +85,22 @@ TEST(ScatteredEstimator, AnswersASampleAsItWasGiven) {
         EXPECT_EQ(answer.source, Source::Measured);
         EXPECT_DOUBLE_EQ(answer.f[Band::R], point.f);
         EXPECT_DOUBLE_EQ(answer.f[Band::B], point.f);
+        EXPECT_FALSE(answer.u(Band::R)) << "the data say nothing of it";
     }
+    // Between samples the deviation is learned from them all.
+    const Answer between = (*made)->answer(pairOf(20, 0, 40, 77));
+    ASSERT_TRUE(between.u(Band::R));
+    EXPECT_GT(*between.u(Band::R), 0);
+    EXPECT_LT(*between.u(Band::R), 0.02 * between.f[Band::R]);
+    // What the data do say is said again.
+    BrdfData known = dataOf(points);
+    known.uKnown = true;
+    for (FitRow& row : known.rows) row.uRandom[0] = 0.01 * row.f[0];
+    const auto stated = ScatteredEstimator::over(known);
+    ASSERT_TRUE(stated) << stated.error().message;
+    const Answer given = (*stated)->answer(points[7].pair);
+    ASSERT_TRUE(given.u(Band::G));
+    EXPECT_DOUBLE_EQ(*given.u(Band::G), 0.01 * points[7].f);
 }
 
 TEST(ScatteredEstimator, IsRightBetweenItsSamplesAndReciprocal) {
@@ -151,8 +166,14 @@ TEST(ScatteredEstimator, PredictsNistsPtfe) {
         const auto made = ScatteredEstimator::over(dataOf(kept));
         ASSERT_TRUE(made) << made.error().message;
         const double rms = rmsOf(**made, held);
-        std::cout << "split " << seed << ": " << 100 * rms << " %, carried by "
-                  << (*made)->carrier().family->name() << "\n";
+        const auto within = std::count_if(held.begin(), held.end(), [&](const Point& point) {
+            const Answer answer = (*made)->answer(point.pair);
+            return std::abs(answer.f[Band::R] - point.f) <= 2 * *answer.u(Band::R);
+        });
+        const double share = static_cast<double>(within) / static_cast<double>(held.size());
+        std::cout << "split " << seed << ": " << 100 * rms << " %, " << 100 * share
+                  << " % within 2 u, carried by " << (*made)->carrier().family->name() << "\n";
+        EXPECT_GT(share, 0.85);
         sum += rms;
     }
     EXPECT_LT(sum / splits, 0.012);

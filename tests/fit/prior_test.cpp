@@ -67,6 +67,44 @@ TEST(PriorLibrary, NamesTheLineThatIsNoModel) {
     EXPECT_FALSE(PriorLibrary::read(folder / "missing.txt"));
 }
 
+TEST(PriorLibrary, RefusesFewerThanTenMaterialsThatDiffer) {
+    const test::TempFolder folder;
+    PriorLibrary library = PriorLibrary::standard(9);
+    library.specs.insert(library.specs.end(), 5, library.specs.front());
+    std::ofstream(folder / "few.txt") << library.text();
+    const auto few = PriorLibrary::read(folder / "few.txt");
+    ASSERT_FALSE(few);
+    EXPECT_EQ(few.error().kind, ErrorKind::File);
+    EXPECT_NE(few.error().message.find("9 materials that differ"), std::string::npos)
+        << few.error().message;
+    EXPECT_NE(few.error().message.find("prior build"), std::string::npos);
+    library.specs.emplace_back("lambert,albedo=0.123");
+    std::ofstream(folder / "enough.txt") << library.text();
+    EXPECT_TRUE(PriorLibrary::read(folder / "enough.txt"));
+}
+
+TEST(PriorLibrary, AddsThePublishedFitsThatAGridOfOneDegreeResolves) {
+    const test::TempFolder folder;
+    const auto ward = [](const std::string& name, const std::string& roughness) {
+        return name +
+               " = Aggregate(Lambertian(albedo = [0.1, 0.2, 0.3]), NganWard(albedo = "
+               "[1, 2, 3], roughness = " +
+               roughness + "))\n";
+    };
+    std::ofstream(folder / "some.fit") << ward("wide", "0.05") << ward("narrow", "0.03");
+    PriorLibrary library = PriorLibrary::standard(12);
+    const auto added = library.addPublishedFits(folder / "some.fit");
+    ASSERT_TRUE(added) << added.error().message;
+    EXPECT_EQ(*added, 1U);
+    ASSERT_EQ(library.specs.size(), 13U);
+    const auto last = makeModel(library.specs.back());
+    ASSERT_TRUE(last) << library.specs.back();
+    // Both terms at the normal, in the first band.
+    EXPECT_NEAR((*last)->answer({Direction(), Direction()}).f[Band::R],
+                0.1 / kPi + 1 / (4 * kPi * 0.05 * 0.05),
+                1e-9);
+}
+
 TEST(PriorBasis, RefusesALibraryWithoutModels) {
     EXPECT_FALSE(PriorBasis::over(PriorLibrary{{"lambert,albedo=2"}}));
 }

@@ -71,6 +71,10 @@ TEST(EvalEstimator, AnswersBetweenAndBeyondAndSaysWhereFrom) {
     const auto seed =
         evaluated(gonio, {"eval", table, "--points", points, "--estimator", "axis-linear"});
     EXPECT_EQ(seed[2].second, "extrapolated");
+    const auto ending =
+        evaluated(gonio, {"eval", table, "--points", points, "--estimator", "axis-linear:none"});
+    EXPECT_EQ(ending[2].first, "") << "70 degrees lie beyond";
+    EXPECT_EQ(ending[1].first, seed[1].first);
 }
 
 TEST(EvalEstimator, KrigesScatteredValues) {
@@ -92,6 +96,14 @@ TEST(EvalEstimator, KrigesScatteredValues) {
     ASSERT_EQ(rows.size(), 4U);
     EXPECT_NEAR(std::stod(rows[1].first), 0.13, 0.02);
     EXPECT_TRUE(rows[1].second == "interpolated" || rows[1].second == "model") << rows[1].second;
+    // Their own incidences, without being told how to ask them.
+    const Ran compared = gonio(
+        {"--json", "compare", (gonio / "scattered.csv").string(), "model:lambert,albedo=0.4"});
+    ASSERT_EQ(compared.exitCode, 0) << compared.err;
+    const Json differences = Json::parse(compared.out);
+    EXPECT_EQ(test::complaintsOf(differences), "");
+    EXPECT_NEAR(differences["rows"].back()["incidence_deg"].get<double>(), 60, 1e-6);
+    EXPECT_GT(differences["rows"][0]["values"].get<int>(), 10000);
 }
 
 TEST(EvalEstimator, RefusesWhatCannotBe) {
@@ -101,6 +113,7 @@ TEST(EvalEstimator, RefusesWhatCannotBe) {
     const Ran unknown = gonio({"eval", table, "--points", points, "--estimator", "banana"});
     EXPECT_EQ(unknown.exitCode, 2);
     EXPECT_NE(unknown.err.find("carried:lambert+ggx"), std::string::npos) << unknown.err;
+    EXPECT_NE(unknown.err.find(":bezier"), std::string::npos) << unknown.err;
     const Ran formula = gonio({"eval", kSurface, "--points", points, "--estimator", "prior"});
     EXPECT_EQ(formula.exitCode, 2);
     test::writeText(gonio / "library.txt", "banana\n");
@@ -124,9 +137,10 @@ TEST(Compare, TellsWhetherSurfacesAgree) {
     EXPECT_NEAR(json["rows"][0]["relative_rms"].get<double>(), 0.1, 1e-9);
     EXPECT_EQ(json["rows"].size(), 4U * 4 * 3);
     const Ran shown =
-        gonio({"compare", tableFile(gonio).string(), kSurface, "--incidences", "30,50"});
+        gonio({"compare", tableFile(gonio).string(), kSurface, "--incidences", "22.5,50"});
     EXPECT_EQ(shown.exitCode, 0) << shown.err;
     EXPECT_NE(shown.out.find("cannot be said"), std::string::npos) << shown.out;
+    EXPECT_NE(shown.out.find("22.5 "), std::string::npos) << shown.out;
     const Ran bad = gonio({"compare", kSurface, kSurface, "--incidences", "30,x"});
     EXPECT_EQ(bad.exitCode, 2);
     EXPECT_NE(bad.err.find("'x'"), std::string::npos) << bad.err;
@@ -153,7 +167,14 @@ TEST(Albedo, OfAModelIsExactAndOfATableWhatItIs) {
     for (const Json& row : lambert["rows"]) {
         EXPECT_NEAR(row["bands"]["g"]["albedo"].get<double>(), 0.5, 1e-6);
         EXPECT_NEAR(row["bands"]["g"]["missing"].get<double>(), 0, 1e-9);
+        EXPECT_TRUE(row["converged"].get<bool>());
+        EXPECT_GE(row["evaluations"].get<int>(), 5400);
     }
+    const Ran cheap = gonio(
+        {"albedo", "model:ggx,f0=1,alpha=0.001", "--incidences", "89.9", "--effort", "draft"});
+    EXPECT_NE(cheap.out.find("5400"), std::string::npos) << cheap.out;
+    EXPECT_NE(cheap.out.find("converged"), std::string::npos) << cheap.out;
+    EXPECT_EQ(gonio({"albedo", "model:ggx,f0=1,alpha=0.1", "--effort", "banana"}).exitCode, 2);
     EXPECT_TRUE(lambert["rows"][2]["incidence_deg"].is_null());
     const Ran bad = gonio({"albedo", "model:lambert,albedo=0.5", "--incidences", "95"});
     EXPECT_EQ(bad.exitCode, 2);
@@ -186,16 +207,24 @@ TEST(PriorBuild, WritesALibraryThatReadsBack) {
     const Json json = Json::parse(ran.out);
     EXPECT_EQ(test::complaintsOf(json), "");
     EXPECT_EQ(json["materials"], 60);
+    const std::string points = pointsFile(gonio).string();
     const auto rows = evaluated(gonio,
                                 {"eval",
                                  tableFile(gonio).string(),
                                  "--points",
-                                 pointsFile(gonio).string(),
+                                 points,
                                  "--estimator",
-                                 "specular-log",
+                                 "prior",
                                  "--prior",
                                  file});
-    EXPECT_EQ(rows.size(), 4U);
+    const auto truth = evaluated(gonio, {"eval", kSurface, "--points", points});
+    ASSERT_EQ(rows.size(), 4U);
+    for (const std::size_t between : {1U, 2U}) {
+        const double f = std::stod(truth[between].first);
+        EXPECT_EQ(rows[between].second, "prior");
+        EXPECT_NEAR(std::stod(rows[between].first), f, 0.01 * f);
+        EXPECT_NE(rows[between].first, truth[between].first);
+    }
     EXPECT_EQ(gonio({"prior", "build", "--fits", file, "-o", file}).exitCode, 6);
 }
 
