@@ -19,6 +19,7 @@
 #include "proc/optics/spot.h"
 #include "proc/quality/seen_direction.h"
 #include "proc/radiance/merge.h"
+#include "proc/table/achieved.h"
 
 namespace gonio::daemon {
 namespace {
@@ -147,22 +148,6 @@ Result<Captured> capturePlacement(const Bench& bench,
     captured->freshDarks = *darks;
     captured->darks = std::move(*darks);
     return captured;
-}
-
-/// The median over the cells present, relative, k = 1; empty: there are none.
-std::optional<double> achieved(const proc::SampleSet& set) {
-    std::vector<double> relative;
-    for (const proc::LedTable& led : set.leds) {
-        for (const proc::CellSamples& cells : led.bands) {
-            for (std::size_t cell = 0; cell < cells.size(); ++cell) {
-                if (cells.present(cell) && cells.f[cell] > 0) {
-                    relative.push_back(cells.at(cell).u() / cells.f[cell]);
-                }
-            }
-        }
-    }
-    if (relative.empty()) return std::nullopt;
-    return median(std::move(relative));
 }
 
 /// Of each cell: standard uncertainty of where it lies, per axis; half a turn beyond the field.
@@ -323,7 +308,7 @@ proc::SampleSet calibrateSample(const PlacementSignals& signals,
     noteBlackCheck(checkBlack(references, ledAngles), info);
     set.info = std::move(info);
     proc::SampleSet flat = referredToItsNormal(std::move(set), tilt, limits);
-    flat.info.achievedUncertainty = achieved(flat);
+    flat.info.achievedUncertainty = proc::achievedUncertainty(flat);
     return flat;
 }
 

@@ -54,6 +54,10 @@ Result<JudgingLimits> readLimits(const std::filesystem::path& file) {
     readBoth(keys, "saturation", sample.saturation);
     sample.reciprocityChiSquare =
         keys.positiveOr("reciprocity.chi_square", sample.reciprocityChiSquare);
+    sample.planeSymmetry = keys.positiveOr("symmetry.plane_warned", sample.planeSymmetry);
+    sample.isotropy = keys.positiveOr("symmetry.isotropy_warned", sample.isotropy);
+    sample.symmetryChiSquare = keys.positiveOr("symmetry.chi_square", sample.symmetryChiSquare);
+    sample.repeatOutliers = keys.positiveOr("repeats.warned", sample.repeatOutliers);
     sample.softness = keys.positiveOr("softness.refused", sample.softness);
     sample.drift = keys.positiveOr("drift.warned", sample.drift);
     sample.energySure = keys.positiveOr("energy.refused_u", sample.energySure);

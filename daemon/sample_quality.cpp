@@ -8,6 +8,7 @@
 #include "proc/quality/reciprocity.h"
 #include "proc/quality/repeat.h"
 #include "proc/quality/saturation.h"
+#include "proc/quality/symmetry.h"
 #include "proc/quality/verdict.h"
 
 namespace gonio::daemon {
@@ -95,6 +96,8 @@ void noteLimits(const JudgingLimits& limits, proc::SampleInfo& info) {
 void judgeTable(proc::SampleSet& sample, const proc::QualityLimits& limits) {
     put(sample,
         {proc::reciprocityVerdict(sample, limits),
+         proc::planeVerdict(sample, limits),
+         proc::isotropyVerdict(sample, limits),
          proc::energyVerdict(sample, limits),
          proc::saturationVerdict(sample, limits)});
 }

@@ -14,7 +14,8 @@ namespace gonio::daemon {
 /// A sample says by which limits it was judged.
 void noteLimits(const JudgingLimits& limits, proc::SampleInfo& info);
 
-/// By its table alone: reciprocity, energy, saturation. What is worked out again is judged again.
+/// By its table alone: reciprocity, plane symmetry, isotropy, energy, saturation. What is worked
+/// out again is judged again.
 void judgeTable(proc::SampleSet& sample, const proc::QualityLimits& limits);
 
 /// How it was captured: frames, light, ambient, softness, drift; by the limits of the rig profile.

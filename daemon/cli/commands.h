@@ -154,6 +154,17 @@ struct ConvertOptions {
 };
 Result<void> convert(const CommonOptions& common, const ConvertOptions& options);
 
+struct MergeCommandOptions {
+    std::vector<std::string> files;
+    std::filesystem::path output;  ///< .gonio or .csv
+    bool plane = false;
+    bool isotropic = false;
+    bool reciprocal = false;
+    bool anyCalibration = false;
+};
+/// Rotations, repeats or bands of one sample as one file (daemon/merging.h).
+Result<void> merge(const CommonOptions& common, const MergeCommandOptions& options);
+
 struct ExportOptions {
     std::string file;
     std::filesystem::path output;

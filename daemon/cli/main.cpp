@@ -42,6 +42,7 @@ struct Program {
     CompareOptions compare;
     PriorOptions prior;
     ConvertOptions convert;
+    MergeCommandOptions merge;
     ExportOptions exported;
     PlotOptions plot;
     FitOptions fit;
@@ -332,6 +333,19 @@ void Program::addFiles() {
     sub->add_option("output", convert.output, "the file to write (.bsdf, .csv, .gonio)")
         ->required();
     sub->add_option("--to", convert.to, "zemax, csv or gonio, where the extension does not tell");
+
+    sub = command(app, "merge", "make one file of rotations, repeats or bands of a sample", [this] {
+        return daemon::merge(common, merge);
+    });
+    sub->add_option("files", merge.files, "two or more .gonio, or three files of one band each")
+        ->required();
+    sub->add_option("-o,--output", merge.output, "the file to write (.gonio, .csv)")->required();
+    sub->add_flag("--plane", merge.plane, "average the two sides of the plane of incidence");
+    sub->add_flag("--isotropic", merge.isotropic, "average over the rotations");
+    sub->add_flag("--reciprocal", merge.reciprocal, "average pairs that were seen both ways");
+    sub->add_flag("--any-calibration",
+                  merge.anyCalibration,
+                  "what was measured on other rigs or by other references, too");
 
     sub = command(app, "export", "write a file in all formats, or some", [this] {
         return exportTo(common, exported);

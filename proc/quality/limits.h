@@ -14,6 +14,12 @@ struct QualityLimits {
     Limits reciprocity{.warned = 0.05, .refused = 0.15};
     double reciprocityChiSquare = 4;  ///< per pair, below which the difference is explained
 
+    /// Median relative difference between the sides of the plane of incidence, and between
+    /// rotations; chi-square per degree of freedom, below which it is chance.
+    double planeSymmetry = 0.02, isotropy = 0.02;
+    double symmetryChiSquare = 4;
+    double repeatOutliers = 1e-4;  ///< share of repeated values beyond five standard uncertainties
+
     double energySure = 3;  ///< standard uncertainties above an albedo of 1
 
     /// Share of the field's solid angle.

@@ -4,6 +4,7 @@
 
 #include "proc/core/median.h"
 #include "proc/core/number_text.h"
+#include "proc/table/rotations.h"
 #include "proc/table/sample_lookup.h"
 
 namespace gonio::proc {
@@ -45,6 +46,15 @@ Figure medianDifference(const std::vector<ReciprocalPair>& pairs) {
 }  // namespace
 
 std::vector<ReciprocalPair> reciprocalPairs(const SampleSet& sample) {
+    const std::vector<Radians> rotations = rotationsOf(sample);
+    if (rotations.size() > 1) {
+        std::vector<ReciprocalPair> all;
+        for (const Radians rotation : rotations) {
+            const auto part = reciprocalPairs(atRotation(sample, rotation));
+            all.insert(all.end(), part.begin(), part.end());
+        }
+        return all;
+    }
     const SampleLookup lookup(sample);
     const std::vector<LedTable>& leds = lookup.set().leds;
     std::vector<ReciprocalPair> pairs;

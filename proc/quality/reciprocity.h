@@ -18,10 +18,10 @@
 
 namespace gonio::proc {
 
-/// One pair of directions that was measured both ways.
+/// One pair of directions that was measured both ways, at one rotation.
 struct ReciprocalPair {
-    std::size_t led = 0, other = 0;
-    bool mirrored = false;  ///< on the side away from the lights
+    std::size_t led = 0, other = 0;  ///< among the LEDs of that rotation
+    bool mirrored = false;           ///< on the side away from the lights
     Band band = Band::R;
     double difference = 0;  ///< (f(led -> other) - f(other -> led)) / their mean
     double u = 0;

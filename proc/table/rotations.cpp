@@ -7,6 +7,7 @@ namespace gonio::proc {
 namespace {
 
 constexpr Radians kSame = 0.01_deg;
+constexpr Radians kSameLed = 0.5_deg;
 
 }  // namespace
 
@@ -19,6 +20,12 @@ Radians rotationOf(double degrees) {
 
 bool sameRotation(Radians a, Radians b) {
     return std::abs(std::remainder((a - b).value(), 2 * kPi)) <= kSame.value();
+}
+
+bool sameIncidence(Radians a, Radians b) { return std::abs((a - b).value()) <= kSameLed.value(); }
+
+bool sameLight(const LedTable& a, const LedTable& b) {
+    return sameIncidence(a.incidence, b.incidence) && sameRotation(a.rotation, b.rotation);
 }
 
 std::vector<Radians> rotationsOf(const SampleSet& set) {

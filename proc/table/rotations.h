@@ -15,6 +15,11 @@ namespace gonio::proc {
 
 [[nodiscard]] bool sameRotation(Radians a, Radians b);
 
+/// To half a degree: the same LED.
+[[nodiscard]] bool sameIncidence(Radians a, Radians b);
+/// The same LED at the same rotation.
+[[nodiscard]] bool sameLight(const LedTable& a, const LedTable& b);
+
 /// Of the LEDs, ascending, each once.
 [[nodiscard]] std::vector<Radians> rotationsOf(const SampleSet& set);
 

@@ -10,6 +10,7 @@
 #include "daemon/api/api.h"
 #include "proc/formats/gonio_exr.h"
 #include "proc/formats/graw_exr.h"
+#include "proc/table/rotations.h"
 #include "tests/daemon/cli/program.h"
 #include "tests/daemon/engine/running_engine.h"
 #include "tests/daemon/engine/test_rig.h"
@@ -239,6 +240,42 @@ TEST_F(ProgramDocuments, OfTheTradeOfAcquisitionConforms) {
     EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 13);
     EXPECT_EQ(gonio({"trade", "acquisition", "--levels", "4"}).exitCode, 2);
     EXPECT_EQ(gonio({"trade"}).exitCode, 2);
+}
+
+TEST_F(ProgramDocuments, OfMergedFilesConform) {
+    auto set = test::sampleSet([](Radians, const Direction& wo) { return 0.5 + 0.1 * wo.x(); });
+    set.leds.resize(2);
+    std::vector<std::string> merge{"merge"};
+    for (const char* rotation : {"0", "0", "90"}) {
+        for (proc::LedTable& led : set.leds) {
+            led.rotation = proc::rotationOf(std::stod(rotation));
+            led.bands[0].f[100] += 0.01;
+        }
+        merge.push_back((gonio / (std::to_string(merge.size()) + ".gonio")).string());
+        ASSERT_TRUE(proc::writeGonio(merge.back(), set));
+    }
+    const std::string out = (gonio / "merged.gonio").string();
+    merge.insert(merge.end(), {"-o", out, "--plane", "--reciprocal"});
+    const Json merged = expectConforms(merge);
+    EXPECT_EQ(merged["how"], "rotations of repeats");
+    EXPECT_EQ(merged["rotations_deg"], (std::vector<double>{0, 90}));
+    EXPECT_EQ(expectConforms({"info", out})["leds"][3]["rotation_deg"], 90);
+
+    // The bands of a surface apart, as Zemax files hold it, and together again.
+    std::vector<std::string> bands{"merge", "-o", (gonio / "rgb.csv").string()};
+    set.leds.resize(1);
+    ASSERT_TRUE(proc::writeGonio(gonio / "one.gonio", set));
+    expectConforms({"convert", (gonio / "one.gonio").string(), (gonio / "one.bsdf").string()});
+    for (const char* band : {"R", "G", "B"})
+        bands.push_back((gonio / ("one_" + std::string(band) + ".bsdf")).string());
+    const Json channels = expectConforms(bands);
+    EXPECT_EQ(channels["channels"]["g"]["estimated"], 0);
+    EXPECT_EQ(channels["channels"]["b"]["partners"], channels["channels"]["r"]["partners"]);
+    EXPECT_NE(test::textOf(gonio / "rgb.csv").find("f_r,f_g,f_b,flags_r"), std::string::npos);
+    bands[2] = out;  // a .gonio wants uncertainties
+    const test::Ran refused = gonio(bands);
+    EXPECT_EQ(refused.exitCode, 2);
+    EXPECT_NE(refused.err.find("-o OUT.csv"), std::string::npos) << refused.err;
 }
 
 TEST_F(ProgramDocuments, OfLossesConform) {

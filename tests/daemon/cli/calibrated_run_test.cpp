@@ -37,10 +37,17 @@ TEST(CalibratedRun, WithAllThatCanBeCalibratedTheRigIsKnownAndTheSampleGood) {
     gonio({"sim", "place", "white"});
     gonio({"calibrate", "white"});
 
-    gonio({"sim", "place", "model:lambert,albedo=0.3/0.1/0.05+ggx,alpha=0.2,f0=0.04"});
-    const Json measured = gonio({"measure", "all"});
+    gonio({"sim",
+           "place",
+           "model:lambert,albedo=0.3/0.1/0.05+ggx,alpha=0.2,f0=0.04",
+           "--turned",
+           "-45"});
+    const Json measured = gonio({"measure", "all", "--rotation", "-45"});
+    EXPECT_EQ(measured["rotation_deg"], 315);
     EXPECT_EQ(measured["calibration"], "1+6+7+4+3+2") << "mirror, black, white, flat, leds, sensor";
     const Json info = gonio({"info", measured["file"]});
+    EXPECT_EQ(info["leds"][3]["rotation_deg"], 315);
+    EXPECT_EQ(gonio({"info", measured["raw"]})["about"]["rotation_deg"], "315");
     for (const auto& [name, verdict] : info["qc"].items())
         EXPECT_NE(verdict["grade"], "refused") << name << ' ' << verdict;
     expectAccurate(gonio({"sim", "score", measured["file"]})["samples"][0]);

@@ -1,0 +1,239 @@
+#include "proc/table/average.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "proc/core/median.h"
+#include "proc/optics/cell_grid.h"
+#include "proc/table/budget_shares.h"
+#include "proc/table/cell_mean.h"
+#include "proc/table/rotations.h"
+
+namespace gonio::proc {
+namespace {
+
+/// One state as one capture has it.
+struct Part {
+    std::size_t capture = 0;
+    const CellSamples* cells = nullptr;
+    double shared = 0;  ///< relative part of u_systematic that the captures share
+    double light = 0;   ///< relative part of one capture's light
+    double scale = 1;
+};
+
+std::optional<std::size_t> tableAt(const SampleSet& set, Radians incidence) {
+    for (std::size_t i = 0; i < set.leds.size(); ++i) {
+        if (sameIncidence(set.leds[i].incidence, incidence)) return i;
+    }
+    return std::nullopt;
+}
+
+/// Of all captures, each once.
+std::vector<Radians> incidencesOf(std::span<const SampleSet> captures) {
+    std::vector<Radians> all;
+    for (const SampleSet& set : captures) {
+        for (const LedTable& led : set.leds) {
+            const bool known = std::any_of(all.begin(), all.end(), [&](Radians one) {
+                return sameIncidence(one, led.incidence);
+            });
+            if (!known) all.push_back(led.incidence);
+        }
+    }
+    std::sort(all.begin(), all.end());
+    return all;
+}
+
+/// Relative: what one capture's light may be off by where no budget says it.
+double medianSystematic(const CellSamples& cells) {
+    std::vector<double> relative;
+    for (std::size_t cell = 0; cell < cells.size(); ++cell) {
+        if (cells.present(cell) && cells.f[cell] > 0)
+            relative.push_back(cells.uSystematic[cell] / cells.f[cell]);
+    }
+    return relative.empty() ? 0 : median(std::move(relative));
+}
+
+bool calibratedAlike(std::span<const SampleSet> captures) {
+    return std::all_of(captures.begin(), captures.end(), [&](const SampleSet& set) {
+        return set.info.calibrationId == captures.front().info.calibrationId;
+    });
+}
+
+class Averaging {
+public:
+    explicit Averaging(std::span<const SampleSet> captures)
+        : captures_(captures), alike_(calibratedAlike(captures)) {
+        for (const SampleSet& set : captures) shares_.push_back(budgetShares(set));
+        result_.outliersOf.resize(captures.size());
+    }
+
+    Averaged run() {
+        result_.set.info = captures_.front().info;
+        const Radians rotation =
+            captures_.front().leds.empty() ? Radians() : captures_.front().leds.front().rotation;
+        for (const Radians incidence : incidencesOf(captures_)) {
+            LedTable led{.incidence = incidence, .rotation = rotation, .bands = {}};
+            for (const Band band : kBands) led.bands[index(band)] = meanState(incidence, band);
+            result_.set.leds.push_back(std::move(led));
+        }
+        std::stable_sort(
+            result_.outliers.begin(),
+            result_.outliers.end(),
+            [](const Outlier& a, const Outlier& b) { return std::abs(a.away) > std::abs(b.away); });
+        result_.cells = cells_.result();
+        result_.scales = scales_.result();
+        if (!weightSquares_.empty()) result_.weightSquares = median(std::move(weightSquares_));
+        return std::move(result_);
+    }
+
+private:
+    std::vector<Part> partsOf(Radians incidence, Band band) const {
+        std::vector<Part> parts;
+        for (std::size_t c = 0; c < captures_.size(); ++c) {
+            const auto table = tableAt(captures_[c], incidence);
+            if (!table) continue;
+            const CellSamples& cells = captures_[c].leds[*table].bands[index(band)];
+            if (cells.size() == 0) continue;
+            const BudgetShare& share = shares_[c][*table][index(band)];
+            const bool told = share.common > 0 || share.state > 0 || share.cell > 0;
+            const double state = told ? share.state : medianSystematic(cells);
+            const double light = alike_ ? state / std::sqrt(2.0) : state;
+            const double tile = alike_ ? std::hypot(share.cell, share.patch) : 0;
+            parts.push_back({.capture = c,
+                             .cells = &cells,
+                             .shared = std::hypot(share.common, tile, share.state),
+                             .light = light});
+        }
+        return parts;
+    }
+
+    /// The values of a cell that are there, and whose they are.
+    struct Present {
+        std::vector<CellValue> values;
+        std::vector<const Part*> parts;
+    };
+    static Present presentIn(const std::vector<Part>& parts, std::size_t cell) {
+        Present present;
+        for (const Part& part : parts) {
+            if (!part.cells->present(cell)) continue;
+            const Measured<double> value = part.cells->at(cell);
+            present.values.push_back({value, apartFrom(value, part.shared)});
+            present.parts.push_back(&part);
+        }
+        return present;
+    }
+
+    /// k_i of each part, from the cells that all of them have.
+    void findScales(std::vector<Part>& parts, Radians incidence, Band band) {
+        if (parts.size() < 2) return;
+        std::vector<double> product(parts.size()), square(parts.size());
+        for (std::size_t cell = 0; cell < CellGrid::count(); ++cell) {
+            const Present present = presentIn(parts, cell);
+            if (present.values.size() < parts.size()) continue;
+            const CellMean mean = meanOf(present.values);
+            if (mean.group.outliers > 0) continue;  // a speck of dust is no change of the light
+            const double m = mean.mean.value;
+            for (std::size_t i = 0; i < parts.size(); ++i) {
+                const double w = 1 / std::pow(std::max(present.values[i].uApart, 1e-30), 2);
+                product[i] += w * present.values[i].value.value * m;
+                square[i] += w * m * m;
+            }
+        }
+        const auto count = static_cast<double>(parts.size());
+        ConsistencySum::Group group{.freedom = parts.size() - 1};
+        double squares = 0;
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            if (!(square[i] > 0)) return;
+            parts[i].scale = product[i] / square[i];
+        }
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            const double u = std::hypot(1 / std::sqrt(square[i]), parts[i].light);
+            const double off = parts[i].scale - 1;
+            const double away = off / (u * std::sqrt(1 - 1 / count));
+            group.chiSquare += off * off / (u * u);
+            if (std::abs(away) > kOutlier) ++group.outliers;
+            squares += off * off;
+            result_.states.push_back({parts[i].capture, incidence, band, parts[i].scale, u, away});
+        }
+        group.relative = std::sqrt(squares / (count - 1));
+        scales_.add(group);
+    }
+
+    CellSamples meanState(Radians incidence, Band band) {
+        std::vector<Part> parts = partsOf(incidence, band);
+        if (parts.empty()) return {};
+        findScales(parts, incidence, band);
+        CellSamples mean = CellSamples::missing(CellGrid::count());
+        for (std::size_t cell = 0; cell < mean.size(); ++cell) {
+            for (const Part& part : parts) {
+                mean.flags[cell] = mean.flags[cell] | part.cells->flags[cell];
+                if (part.cells->present(cell)) mean.nEff[cell] += part.cells->nEff[cell];
+            }
+            Present present = presentIn(parts, cell);
+            if (present.values.empty()) continue;
+            const CellMean measured = meanOf(present.values);
+            put(mean, cell, measured.mean);
+            judge(present, {incidence, band, cell}, mean);
+        }
+        return mean;
+    }
+
+    static void put(CellSamples& cells, std::size_t cell, const Measured<double>& value) {
+        cells.f[cell] = value.value;
+        cells.uRandom[cell] = value.uRandom;
+        cells.uSystematic[cell] = value.uSystematic;
+        cells.flags[cell] = value.flags;
+    }
+
+    struct Place {
+        Radians incidence;
+        Band band;
+        std::size_t cell;
+    };
+    /// Without what the light of each capture explains. Where the values still contradict each
+    /// other, the mean's u_random is what they agree to.
+    void judge(Present& present, const Place& place, CellSamples& mean) {
+        if (present.values.size() < 2) return;
+        for (std::size_t i = 0; i < present.values.size(); ++i) {
+            Measured<double>& value = present.values[i].value;
+            const double scale = present.parts[i]->scale;
+            value.value /= scale;
+            value.uRandom /= scale;
+            present.values[i].uApart /= scale;
+        }
+        const CellMean same = meanOf(present.values);
+        cells_.add(same.group);
+        const double middle = same.mean.value;
+        for (std::size_t i = 0; i < same.away.size(); ++i) {
+            if (std::abs(same.away[i]) <= kOutlier) continue;
+            const std::size_t capture = present.parts[i]->capture;
+            ++result_.outliersOf[capture];
+            result_.outliers.push_back({capture,
+                                        place.incidence,
+                                        place.band,
+                                        place.cell,
+                                        same.away[i],
+                                        present.values[i].value.value / middle - 1});
+        }
+        mean.uRandom[place.cell] *= same.widening();
+        if (same.group.outliers > 0) return;
+        double squares = 0;
+        for (const CellValue& one : present.values) squares += std::pow(one.value.uRandom, 2);
+        const double each = std::sqrt(squares / static_cast<double>(present.values.size()));
+        if (each > 0) weightSquares_.push_back(std::pow(mean.uRandom[place.cell] / each, 2));
+    }
+
+    std::span<const SampleSet> captures_;
+    bool alike_;
+    std::vector<BudgetShares> shares_;
+    ConsistencySum cells_, scales_;
+    std::vector<double> weightSquares_;
+    Averaged result_;
+};
+
+}  // namespace
+
+Averaged averageOf(std::span<const SampleSet> captures) { return Averaging(captures).run(); }
+
+}  // namespace gonio::proc
