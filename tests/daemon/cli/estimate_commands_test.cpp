@@ -167,6 +167,12 @@ TEST(TradeLookup, TellsErrorsBytesAndTimes) {
         documentOf(gonio, {"trade", "lookup", "--quick", "-o", folder.string()})["rows"];
     EXPECT_GT(rows.size(), 6U);
     EXPECT_GT(test::textOf(folder / "trade-lookup.md").size(), 500U);
+    const std::string picture = test::textOf(folder / "trade-lookup.svg");
+    EXPECT_EQ(picture.find("<svg"), 0U);
+    for (const Json& row : rows) {
+        const std::string material = row["material"];
+        EXPECT_NE(picture.find(">" + material + "<"), std::string::npos) << material;
+    }
 }
 
 TEST(TradeNeighbours, TellsCostsByNumber) {
