@@ -103,6 +103,11 @@ std::vector<std::string> estimatorNames() {
     return names;
 }
 
+Result<Estimated> estimated(Material material, const EstimatorChoice& choice) {
+    if (auto known = checkName(choice.name); !known) return known.error();
+    return ofMaterial(std::move(material), choice);
+}
+
 Result<Estimated> openEstimated(const std::string& f,
                                 const std::filesystem::path& store,
                                 const EstimatorChoice& choice,

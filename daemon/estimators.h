@@ -33,6 +33,9 @@ struct Estimated {
 
 [[nodiscard]] std::vector<std::string> estimatorNames();
 
+/// A measured sample or table, ready to answer; errors as openEstimated, without its name.
+[[nodiscard]] Result<Estimated> estimated(Material material, const EstimatorChoice& choice);
+
 /// F, ready to answer. A model is its own estimator: any but auto and none is a Usage error; so is
 /// a name that is none. A .csv file holds scattered values.
 [[nodiscard]] Result<Estimated> openEstimated(const std::string& f,

@@ -6,13 +6,13 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "tests/daemon/cli/program.h"
-#include "tests/support/json_schema.h"
+#include "tests/daemon/cli/documents.h"
 
 namespace gonio {
 namespace {
 
 using Json = nlohmann::json;
+using test::documentOf;
 using test::Program;
 using test::Ran;
 
@@ -133,16 +133,6 @@ TEST(Compare, TellsWhetherSurfacesAgree) {
     const Ran nothing =
         gonio({"compare", tableFile(gonio).string(), kSurface, "--incidences", "80"});
     EXPECT_EQ(nothing.exitCode, 7) << nothing.err;
-}
-
-/// The documents of commands that answer as JSON hold to their schemas.
-Json documentOf(const Program& gonio, std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), "--json");
-    const Ran ran = gonio(arguments);
-    EXPECT_EQ(ran.exitCode, 0) << ran.err;
-    Json json = Json::parse(ran.out, nullptr, false);
-    EXPECT_EQ(test::complaintsOf(json), "");
-    return json;
 }
 
 TEST(Albedo, OfAModelIsExactAndOfATableWhatItIs) {
