@@ -155,6 +155,13 @@ Result<CalibrationSet> parseSet(Store& store,
                      "are there, a zero, flat, leds and sensor, in this order"};
 }
 
+std::optional<Seconds> ageAt(const CalibrationRecord& calibration, const std::string& dateUtc) {
+    const auto then = secondsOf(calibration.dateUtc);
+    const auto now = secondsOf(dateUtc);
+    if (!then || !now) return std::nullopt;
+    return Seconds(std::difftime(*now, *then));
+}
+
 std::string whyNot(const CalibrationRecord& calibration,
                    const RigNow& now,
                    const ValidityLimits& limits) {
@@ -165,18 +172,16 @@ std::string whyNot(const CalibrationRecord& calibration,
     if (const std::string other = otherProfile(calibration, now); !other.empty()) {
         return name + other + runAgain(calibration);
     }
-    const auto then = secondsOf(calibration.dateUtc);
-    const auto today = secondsOf(now.dateUtc);
-    if (!then || !today) return name + " has no date that can be read" + runAgain(calibration);
-    const Seconds age(std::difftime(*today, *then));
-    if (age < -kClocksApart) {
+    const auto age = ageAt(calibration, now.dateUtc);
+    if (!age) return name + " has no date that can be read" + runAgain(calibration);
+    if (*age < -kClocksApart) {
         return name + " is dated " + calibration.dateUtc + ", which is still to come: it is " +
                now.dateUtc + "; set the computer's clock right" + runAgain(calibration);
     }
     const Seconds longest = isTile(calibration) ? limits.tiles : limits.mirror;
-    if (age > longest) {
+    if (*age > longest) {
         const Seconds hour = std::chrono::hours(1);
-        return name + " is " + fixed(age / hour, 1) + " h old, good for " +
+        return name + " is " + fixed(*age / hour, 1) + " h old, good for " +
                fixed(longest / hour, 1) + " h" + runAgain(calibration);
     }
     const bool anyWarmth = calibration.kind == "leds" || calibration.kind == "sensor" ||

@@ -48,6 +48,10 @@ struct CalibrationSet {
                                                  const std::string& rig,
                                                  const std::string& kind);
 
+/// How long before that date it was taken; empty where one of the dates cannot be read.
+[[nodiscard]] std::optional<Seconds> ageAt(const CalibrationRecord& calibration,
+                                           const std::string& dateUtc);
+
 /// The rig as it is now.
 struct RigNow {
     std::string serial;

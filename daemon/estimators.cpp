@@ -96,6 +96,11 @@ Result<void> checkName(const std::string& name) {
 
 bool holdsScattered(const std::string& f) { return std::filesystem::path(f).extension() == ".csv"; }
 
+Result<Estimated> estimated(Material material, const EstimatorChoice& choice) {
+    if (auto known = checkName(choice.name); !known) return known.error();
+    return ofMaterial(std::move(material), choice);
+}
+
 Result<Estimated> openEstimated(const std::string& f,
                                 const std::filesystem::path& store,
                                 const EstimatorChoice& choice,

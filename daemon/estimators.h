@@ -41,6 +41,9 @@ struct Estimated {
 /// Whether F is a .csv of scattered values: `auto` is then the only one.
 [[nodiscard]] bool holdsScattered(const std::string& f);
 
+/// A measured sample or table, ready to answer; errors as openEstimated, without its name.
+[[nodiscard]] Result<Estimated> estimated(Material material, const EstimatorChoice& choice);
+
 /// F, ready to answer. A model is its own estimator: any but auto and none is a Usage error; so is
 /// a name that is none. A .csv file holds scattered values.
 [[nodiscard]] Result<Estimated> openEstimated(const std::string& f,

@@ -31,6 +31,20 @@ std::vector<Radians> Material::incidences() const {
     return all;
 }
 
+bool isStored(const std::string& f) { return f.starts_with(kSample); }
+
+Result<std::filesystem::path> fileOf(const std::string& f, const std::filesystem::path& store) {
+    if (f.starts_with(kModel)) {
+        return Error{ErrorKind::Usage, "'" + f + "' is a formula; wanted a file or sample:NAME"};
+    }
+    if (!isStored(f)) return std::filesystem::path(f);
+    Result<Store> opened = Store::openToRead(store);
+    if (!opened) return opened.error();
+    auto record = opened->sample(f.substr(kSample.size()));
+    if (!record) return record.error();
+    return std::move(record->file);
+}
+
 Result<Material> openMaterial(const std::string& f,
                               const std::filesystem::path& store,
                               proc::EvalPath path) {
@@ -39,15 +53,9 @@ Result<Material> openMaterial(const std::string& f,
         if (!model) return model.error();
         return Material{.kind = "model", .scatterer = std::move(*model)};
     }
-    std::filesystem::path file = f;
-    if (f.starts_with(kSample)) {
-        Result<Store> opened = Store::openToRead(store);
-        if (!opened) return opened.error();
-        const auto record = opened->sample(f.substr(kSample.size()));
-        if (!record) return record.error();
-        file = record->file;
-    }
-    Result<std::unique_ptr<const Scatterer>> brdf = proc::openBrdf(file);
+    const Result<std::filesystem::path> file = fileOf(f, store);
+    if (!file) return file.error();
+    Result<std::unique_ptr<const Scatterer>> brdf = proc::openBrdf(*file);
     if (!brdf) return brdf.error();
     Material material{.kind = "file", .scatterer = std::move(*brdf)};
     if (const auto* sample = dynamic_cast<const proc::SampleLookup*>(material.scatterer.get())) {

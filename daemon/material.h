@@ -25,6 +25,13 @@ struct Material {
     [[nodiscard]] std::vector<Radians> incidences() const;
 };
 
+/// sample:NAME, of the store.
+[[nodiscard]] bool isStored(const std::string& f);
+/// The file behind F, which may not be there; File error for a sample that the store does not have,
+/// Usage error for a model.
+[[nodiscard]] Result<std::filesystem::path> fileOf(const std::string& f,
+                                                   const std::filesystem::path& store);
+
 /// Usage error for a bad model, File error for a bad file; `store` is needed for sample:NAME only,
 /// `path` is how a model is evaluated.
 [[nodiscard]] Result<Material> openMaterial(const std::string& f,

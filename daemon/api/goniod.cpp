@@ -6,7 +6,6 @@
 
 #include <CLI/CLI.hpp>
 #include <csignal>
-#include <ctime>
 #include <iostream>
 #include <memory>
 #include <random>
@@ -16,19 +15,12 @@
 #include "daemon/api/options.h"
 #include "daemon/api/socket_path.h"
 #include "daemon/engine/usb_port.h"
+#include "daemon/utc_now.h"
 #include "driver/steady_clock.h"
 #include "proc/core/log.h"
 
 namespace gonio::daemon {
 namespace {
-
-std::string utcNow() {
-    const std::time_t now = std::time(nullptr);
-    std::tm utc{};
-    gmtime_r(&now, &utc);
-    char text[32];
-    return {text, std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc)};
-}
 
 /// PROTOCOL.md 2: random, its low half not 0.
 std::uint64_t randomClaim() {

@@ -178,6 +178,15 @@ struct PlotOptions {
 };
 Result<void> plot(const CommonOptions& common, const PlotOptions& options);
 
+struct ReportOptions {
+    std::string file;
+    std::filesystem::path output;    ///< empty: NAME.html in the working folder
+    std::string models = "usual";    ///< families with commas, usual, all or none
+    std::string estimator = "auto";  ///< none: nothing is said of what was not measured
+};
+/// All that is known of a measured sample as one HTML file.
+Result<void> report(const CommonOptions& common, const ReportOptions& options);
+
 struct FitOptions {
     std::string file;            ///< .gonio, Zemax, CSV of scattered values, or sample:NAME
     std::string models = "all";  ///< families, with commas

@@ -2,13 +2,13 @@
 // lock.
 
 #include <algorithm>
-#include <cctype>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "daemon/cli/commands.h"
 #include "daemon/cli/output.h"
+#include "daemon/cli/output_name.h"
 #include "daemon/estimators.h"
 #include "daemon/exports.h"
 #include "daemon/material.h"
@@ -75,27 +75,6 @@ Result<std::vector<ExportFormat>> formatsOf(const std::string& list) {
         formats.push_back(*format);
     }
     return formats;
-}
-
-/// What a plot is of: the sample's own name, the model, or the file's.
-std::string titleOf(const std::string& f, const Material& material) {
-    if (material.sample != nullptr && !material.sample->info.name.empty()) {
-        return material.sample->info.name;
-    }
-    if (material.kind == "model") return f.substr(f.find(':') + 1);
-    return fs::path(f).stem().string();
-}
-
-/// Letters, digits and a few signs, at most 80 of them.
-std::string fileNameOf(std::string title) {
-    constexpr std::size_t kLongest = 80;
-    title.resize(std::min(title.size(), kLongest));
-    for (char& c : title) {
-        const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' ||
-                           c == '_' || c == '-' || c == '+';
-        if (!plain) c = '-';
-    }
-    return title;
 }
 
 }  // namespace

@@ -45,6 +45,7 @@ struct Program {
     MergeCommandOptions merge;
     ExportOptions exported;
     PlotOptions plot;
+    ReportOptions report;
     FitOptions fit;
     TradeOptions trade;
     TradeInterpolationOptions interpolation;
@@ -359,6 +360,18 @@ void Program::addFiles() {
     });
     sub->add_option("file", plot.file, "a file, sample:NAME or model:SPEC")->required();
     sub->add_option("-o,--output", plot.output, "folder for the pictures");
+
+    sub = command(app, "report", "all that is known of a sample as one HTML file", [this] {
+        return daemon::report(common, report);
+    });
+    sub->add_option("file", report.file, "a .gonio file or sample:NAME")->required();
+    sub->add_option("-o,--output", report.output, "the file to write; default: NAME.html here");
+    sub->add_option("--models",
+                    report.models,
+                    "families to fit, with commas; usual (six of them), all or none");
+    sub->add_option("--estimator",
+                    report.estimator,
+                    "between and beyond the measured angles: auto, none, or a method by name");
 }
 
 void Program::addFit() {

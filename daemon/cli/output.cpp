@@ -51,4 +51,16 @@ Result<void> makeOutputFolder(const std::filesystem::path& folder) {
                      (failed ? ", " + failed.message() : "")};
 }
 
+Result<void> checkOutputFile(const std::filesystem::path& file) {
+    std::error_code ignored;
+    if (std::filesystem::is_directory(file, ignored)) {
+        return Error{ErrorKind::File,
+                     file.string() + ": is a folder; name a file in it to write to"};
+    }
+    const std::filesystem::path folder = file.parent_path();
+    if (folder.empty() || std::filesystem::is_directory(folder, ignored)) return {};
+    return Error{ErrorKind::File,
+                 file.string() + ": there is no folder " + folder.string() + " to write to"};
+}
+
 }  // namespace gonio::daemon

@@ -22,4 +22,8 @@ void printTable(const std::vector<std::vector<std::string>>& rows);
 /// names it.
 [[nodiscard]] Result<void> makeOutputFolder(const std::filesystem::path& folder);
 
+/// Before the work is done: a File error that names it where a file could not stand there, as it is
+/// a folder, or its folder is not there.
+[[nodiscard]] Result<void> checkOutputFile(const std::filesystem::path& file);
+
 }  // namespace gonio::daemon

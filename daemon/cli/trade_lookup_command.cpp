@@ -9,6 +9,7 @@
 #include "driver/steady_clock.h"
 #include "proc/estimate/lookup_study.h"
 #include "proc/formats/file_bytes.h"
+#include "proc/report/lookup_plot.h"
 #include "proc/report/neighbour_plot.h"
 
 namespace gonio::daemon {
@@ -52,6 +53,9 @@ Result<void> tradeLookup(const CommonOptions& common, const TradeLookupOptions& 
     const std::string table = proc::markdown(*rows);
     if (!options.output.empty()) {
         if (auto done = proc::writeFile(options.output / "trade-lookup.md", table); !done)
+            return done;
+        const std::string plot = proc::lookupPlot(*rows);
+        if (auto done = proc::writeFile(options.output / "trade-lookup.svg", plot); !done)
             return done;
     }
     if (common.json) {

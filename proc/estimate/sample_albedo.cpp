@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
+#include "proc/core/parallel.h"
 #include "proc/optics/cell_grid.h"
 #include "proc/table/rotations.h"
 
@@ -12,26 +14,63 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-BandAlbedo summed(const CellSamples& cells, std::size_t& summedCells) {
-    BandAlbedo sum;
-    double random = 0, systematic = 0, answered = 0;
-    for (std::size_t cell = 0; cell < cells.size(); ++cell) {
-        if (!cells.usable(cell) || !std::isfinite(cells.f[cell])) continue;
+/// The sum over cells of one band.
+class CellSum {
+public:
+    void add(std::size_t cell, double f, std::optional<double> uRandom, double uSystematic) {
         const double projected = projectedSolidAngle(cell);
-        sum.value += projected * cells.f[cell];
-        random += std::pow(projected * cells.uRandom[cell], 2);
-        systematic += projected * cells.uSystematic[cell];
-        answered += projected;
+        value_ += projected * f;
+        known_ = known_ && uRandom.has_value();
+        random_ += std::pow(projected * uRandom.value_or(0), 2);
+        systematic_ += projected * uSystematic;
+        answered_ += projected;
+    }
+    void add(std::size_t cell, const CellSamples& cells) {
+        add(cell, cells.f[cell], cells.uRandom[cell], cells.uSystematic[cell]);
+    }
+    [[nodiscard]] BandAlbedo albedo() const {
+        BandAlbedo sum{.value = value_, .missing = std::clamp(1 - answered_ / kPi, 0.0, 1.0)};
+        if (answered_ <= 0) {
+            sum.value = sum.errorBound = kNan;
+        } else if (known_) {
+            sum.uRandom = std::sqrt(random_);
+            sum.uSystematic = systematic_;
+        }
+        return sum;
+    }
+
+private:
+    double value_ = 0, random_ = 0, systematic_ = 0, answered_ = 0;
+    bool known_ = true;
+};
+
+bool counts(const CellSamples& cells, std::size_t cell) {
+    return cell < cells.size() && cells.usable(cell) && std::isfinite(cells.f[cell]);
+}
+
+BandAlbedo summed(const CellSamples& cells, std::size_t& summedCells) {
+    CellSum sum;
+    for (std::size_t cell = 0; cell < cells.size(); ++cell) {
+        if (!counts(cells, cell)) continue;
+        sum.add(cell, cells);
         ++summedCells;
     }
-    sum.missing = std::clamp(1 - answered / kPi, 0.0, 1.0);
-    if (answered > 0) {
-        sum.uRandom = std::sqrt(random);
-        sum.uSystematic = systematic;
-    } else {
-        sum.value = sum.errorBound = kNan;
-    }
-    return sum;
+    return sum.albedo();
+}
+
+/// At the centres of the cells that some band lacks; elsewhere nothing.
+std::vector<Answer> answersAtHoles(const LedTable& led, const Scatterer& beyond) {
+    const Direction wi = Direction::fromSpherical(led.incidence, Radians(0));
+    std::vector<Answer> answers(CellGrid::count(), Answer::none({}, Source::Measured));
+    parallelFor(answers.size(), [&](IndexRange range) {
+        for (std::size_t cell = range.begin; cell < range.end; ++cell) {
+            const bool whole = std::all_of(led.bands.begin(),
+                                           led.bands.end(),
+                                           [&](const auto& own) { return counts(own, cell); });
+            if (!whole) answers[cell] = beyond.answer({.in = wi, .out = CellGrid::centre(cell)});
+        }
+    });
+    return answers;
 }
 
 double sin2(Radians theta) { return std::pow(sin(theta), 2); }
@@ -131,6 +170,31 @@ Albedo directionalAlbedo(const LedTable& led) {
     for (std::size_t band = 0; band < 3; ++band) {
         albedo.bands[band] = summed(led.bands[band], albedo.evaluations);
     }
+    albedo.converged = true;
+    return albedo;
+}
+
+Albedo filledAlbedo(const LedTable& led, const Scatterer& beyond) {
+    const std::vector<Answer> answers = answersAtHoles(led, beyond);
+    Albedo albedo;
+    for (const Band band : kBands) {
+        const CellSamples& cells = led.bands[index(band)];
+        CellSum sum;
+        for (std::size_t cell = 0; cell < answers.size(); ++cell) {
+            const Answer& answer = answers[cell];
+            if (counts(cells, cell)) {
+                sum.add(cell, cells);
+            } else if (std::isfinite(answer.f[band])) {
+                const bool known = answer.uRandom && answer.uSystematic;
+                sum.add(cell,
+                        answer.f[band],
+                        known ? std::optional((*answer.uRandom)[band]) : std::nullopt,
+                        known ? (*answer.uSystematic)[band] : 0);
+            }
+        }
+        albedo.bands[index(band)] = sum.albedo();
+    }
+    albedo.evaluations = answers.size();
     albedo.converged = true;
     return albedo;
 }

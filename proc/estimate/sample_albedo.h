@@ -22,6 +22,10 @@ namespace gonio::proc {
 /// quadrature between cells: the error bound is 0, `evaluations` counts the cells that are summed.
 [[nodiscard]] Albedo directionalAlbedo(const LedTable& led);
 
+/// Likewise with what is missing filled in: where a cell has no value, the answer of `beyond` at
+/// its centre. The uncertainty is empty where such an answer has none.
+[[nodiscard]] Albedo filledAlbedo(const LedTable& led, const Scatterer& beyond);
+
 /// Of a whole sample, (1 / pi) integral of a cos(theta_i) dwi = integral of a d(sin^2(theta_i)),
 /// a linear in sin^2(theta_i) between LEDs: LEDs are independent in what is random. Incidences
 /// beyond the first and last LED count as missing. The error bound is of that line between LEDs,

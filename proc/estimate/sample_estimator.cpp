@@ -161,12 +161,13 @@ Result<std::unique_ptr<const SampleEstimator>> SampleEstimator::over(
 void SampleEstimator::choose() const {
     const std::vector<bool> all(data_.incidences.size(), true);
     const bool draft = options_.effort == Effort::Draft;
-    if (options_.prior && (!draft || options_.method == "prior")) {
+    const std::string& method = options_.method;
+    if (options_.prior && (method == "prior" || (method == "auto" && !draft))) {
         samplePrior_ = std::make_unique<const SamplePrior>(options_.prior(), data_);
     }
     MethodChoiceOptions how;
     how.learn = !draft;
-    how.only = options_.method == "auto" ? "" : options_.method;
+    how.only = method == "auto" ? "" : method;
     if (options_.effort == Effort::Reference) how.fit.rows = 6000;
     choice_ = chooseMethod(data_, samplePrior_.get(), how);
 }

@@ -40,7 +40,8 @@ struct SampleEstimatorOptions {
     std::string method = "auto";
     /// Draft: the carrier of least chi-square without asking the sample, and no prior.
     Effort effort = Effort::Standard;
-    /// Asked when the choice is made; the basis is shared by all estimators of a run. Empty: none.
+    /// Asked when the choice is made, by "auto" and "prior" alone; the basis is shared by all
+    /// estimators of a run. Empty: none.
     std::function<std::shared_ptr<const PriorBasis>()> prior;
 };
 

@@ -1,7 +1,6 @@
 #include "proc/report/hemisphere_map.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -14,9 +13,8 @@
 namespace gonio::proc {
 namespace {
 
-constexpr int kRaster = 181;    // pixels across: one degree and one user unit each
-constexpr int kShades = 64;     // colours told apart; runs of one colour are one stroke
-constexpr int kNoData = 64;     // the shade behind them
+constexpr int kRaster = 181;  // pixels across: one degree and one user unit each
+constexpr int kMostShades = 64;
 constexpr int kOutside = -1;    // at or below the horizon
 constexpr double kPanel = 200;  // user units between panel corners
 constexpr double kLeft = 70, kTop = 76, kRight = 90, kBottom = 4;
@@ -66,48 +64,69 @@ LogAxis axisOf(const std::vector<Panel>& panels, std::span<const Band> bands) {
     return LogAxis::covering(std::max(lowest, highest * 1e-6), highest);
 }
 
-int shadeOf(double f, const LogAxis& axis) {
-    if (!std::isfinite(f)) return kNoData;
-    return std::min(kShades - 1, static_cast<int>(axis.position(f) * kShades));
-}
+/// Colours along an axis; runs of one colour are one stroke.
+struct Scale {
+    LogAxis axis;
+    int shades = kMostShades;
 
-std::string colourOf(int shade) {
-    return shade == kNoData ? std::string(kGrey) : rampColour((shade + 0.5) / kShades);
-}
+    /// That of no number stands behind the others.
+    [[nodiscard]] int shadeOf(double f) const {
+        if (!std::isfinite(f)) return shades;
+        return std::min(shades - 1, static_cast<int>(axis.position(f) * shades));
+    }
+    [[nodiscard]] std::string colourOf(int shade) const {
+        return shade == shades ? std::string(kGrey) : rampColour((shade + 0.5) / shades);
+    }
+};
 
-/// One path for each shade: the runs of pixels that have it.
-std::array<std::string, kShades + 1> runsOf(const Panel& panel,
-                                            Band band,
-                                            const LogAxis& axis,
-                                            Point corner) {
-    std::array<std::string, kShades + 1> paths;
+/// Pixels of a row that have one shade.
+struct Run {
+    int row = 0, begin = 0, end = 0;
+};
+
+/// By shade; the last has no number.
+std::vector<std::vector<Run>> runsOf(const Panel& panel, Band band, const Scale& scale) {
+    std::vector<std::vector<Run>> runs(static_cast<std::size_t>(scale.shades) + 1);
     const auto shadeAt = [&](int column, int row) {
         if (column == kRaster || !directionAt(column, row)) return kOutside;
-        return shadeOf(panel[pixel(column, row)][band], axis);
+        return scale.shadeOf(panel[pixel(column, row)][band]);
     };
     for (int row = 0; row < kRaster; ++row) {
-        int start = 0;
+        int begin = 0;
         int current = kOutside;
         for (int column = 0; column <= kRaster; ++column) {
             const int shade = shadeAt(column, row);
             if (shade == current) continue;
-            if (current != kOutside) {
-                paths[static_cast<std::size_t>(current)] += "M" + fixed(corner.x + start, 0) + " " +
-                                                            fixed(corner.y + row + 0.5, 1) + "h" +
-                                                            std::to_string(column - start);
-            }
-            start = column;
+            if (current != kOutside)
+                runs[static_cast<std::size_t>(current)].push_back({row, begin, column});
+            begin = column;
             current = shade;
         }
     }
-    return paths;
+    return runs;
 }
 
-void drawRaster(Svg& svg, Point corner, const Panel& panel, Band band, const LogAxis& axis) {
-    const auto paths = runsOf(panel, band, axis, corner);
-    for (int shade = 0; shade <= kNoData; ++shade) {
-        const std::string& path = paths[static_cast<std::size_t>(shade)];
-        if (!path.empty()) svg.runs(path, colourOf(shade));
+/// The first run from the corner, each other one from the end of that before it: half as long as
+/// all from the corner.
+std::string pathOf(const std::vector<Run>& runs, Point corner) {
+    std::string path;
+    Run last;
+    for (const Run& run : runs) {
+        path += path.empty() ? "M" + fixed(corner.x + run.begin, 0) + " " +
+                                   fixed(corner.y + run.row + 0.5, 1)
+                             : "m" + std::to_string(run.begin - last.end) + " " +
+                                   std::to_string(run.row - last.row);
+        path += "h" + std::to_string(run.end - run.begin);
+        last = run;
+    }
+    return path;
+}
+
+void drawRaster(Svg& svg, Point corner, const Panel& panel, Band band, const Scale& scale) {
+    const auto runs = runsOf(panel, band, scale);
+    for (int shade = 0; shade <= scale.shades; ++shade) {
+        const std::string path = pathOf(runs[static_cast<std::size_t>(shade)], corner);
+        if (!path.empty()) svg.runs(path, scale.colourOf(shade));
     }
 }
 
@@ -123,10 +142,12 @@ void drawRings(Svg& svg, Point corner, Radians incidence) {
     svg.circle(light, 3.5, {.colour = "#d35400", .width = 1.4, .dash = ""});
 }
 
-void drawScale(Svg& svg, Point corner, double height, const LogAxis& axis) {
+void drawScale(Svg& svg, Point corner, double height, const Scale& scale) {
     // Each shade reaches up to the end and the next one lies over it: no seams.
-    for (int shade = 0; shade < kShades; ++shade) {
-        svg.rectangle(corner, {14, height * (kShades - shade) / kShades}, colourOf(shade));
+    const LogAxis& axis = scale.axis;
+    for (int shade = 0; shade < scale.shades; ++shade) {
+        svg.rectangle(
+            corner, {14, height * (scale.shades - shade) / scale.shades}, scale.colourOf(shade));
     }
     for (int decade = axis.firstDecade; decade <= axis.lastDecade; ++decade) {
         const double y = corner.y + height * (1 - axis.position(std::pow(10.0, decade)));
@@ -146,7 +167,7 @@ std::string hemisphereMaps(const Scatterer& scatterer, const PlotRequest& reques
     const std::span<const Band> bands = shownBands(scatterer);
     std::vector<Panel> panels;
     for (Radians incidence : request.incidences) panels.push_back(evaluate(scatterer, incidence));
-    const LogAxis axis = axisOf(panels, bands);
+    const Scale scale{axisOf(panels, bands), std::clamp(request.shades, 2, kMostShades)};
 
     const double width = static_cast<double>(bands.size()) * kPanel;
     const double height = static_cast<double>(panels.size()) * kPanel;
@@ -158,7 +179,7 @@ std::string hemisphereMaps(const Scatterer& scatterer, const PlotRequest& reques
         svg.text({10, top + 101}, degreesLabel(request.incidences[row]));
         for (Band band : bands) {
             const Point corner{kLeft + static_cast<double>(index(band)) * kPanel, top};
-            drawRaster(svg, corner, panels[row], band, axis);
+            drawRaster(svg, corner, panels[row], band, scale);
             drawRings(svg, corner, request.incidences[row]);
         }
     }
@@ -167,7 +188,7 @@ std::string hemisphereMaps(const Scatterer& scatterer, const PlotRequest& reques
         const double middle = kLeft + static_cast<double>(index(band)) * kPanel + kRaster / 2.0;
         svg.text({middle, kTop - 12}, bandLabel(scatterer, band), Anchor::Middle, 12);
     }
-    drawScale(svg, {kLeft + width + 4, kTop}, height - (kPanel - kRaster), axis);
+    drawScale(svg, {kLeft + width + 4, kTop}, height - (kPanel - kRaster), scale);
     svg.text({kLeft + width, kTop - 12}, request.quantity);
     return svg.document();
 }

@@ -10,9 +10,13 @@ std::span<const Band> shownBands(const Scatterer& scatterer) {
     return std::span(kBands).first(scatterer.bandCount() == BandCount::One ? 1 : kBands.size());
 }
 
+std::string bandName(Band band) {
+    return std::string(1, "RGB"[index(band)]) + " " + fixed(nanometres(band), 0) + " nm";
+}
+
 std::string bandLabel(const Scatterer& scatterer, Band band) {
     if (scatterer.bandCount() == BandCount::One) return "monochrome";
-    return std::string(1, "RGB"[index(band)]) + " " + fixed(nanometres(band), 0) + " nm";
+    return bandName(band);
 }
 
 std::string degreesLabel(Radians angle) {

@@ -13,11 +13,14 @@ struct PlotRequest {
     std::string title;
     std::vector<Radians> incidences;   ///< light at phi = 0
     std::string quantity = "f, 1/sr";  ///< what a hemisphere map shows, over its scale
+    int shades = 64;                   ///< colours that a hemisphere map tells apart, 2 to 64
 };
 
 /// The bands that differ: all three, or one of what is monochrome.
 [[nodiscard]] std::span<const Band> shownBands(const Scatterer& scatterer);
-/// "G 525 nm"; "monochrome" where one band stands for all.
+/// "G 525 nm".
+[[nodiscard]] std::string bandName(Band band);
+/// The same; "monochrome" where one band stands for all.
 [[nodiscard]] std::string bandLabel(const Scatterer& scatterer, Band band);
 /// "22.5 deg", "40 deg": to a tenth of a degree.
 [[nodiscard]] std::string degreesLabel(Radians angle);

@@ -1,40 +1,26 @@
 #include "proc/table/budget_shares.h"
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "proc/calibrate/budget_text.h"
 #include "proc/optics/cell_grid.h"
 
 namespace gonio::proc {
 namespace {
 
-using Json = nlohmann::json;
-
-/// A number at `key`, 0 where there is none.
-double numberAt(const Json& object, const char* key) {
-    const auto found = object.find(key);
-    if (found == object.end() || !found->is_number()) return 0;
-    const auto value = found->get<double>();
-    return std::isfinite(value) ? value : 0;
-}
-
-std::string textAt(const Json& object, const char* key) {
-    const auto found = object.find(key);
-    return found != object.end() && found->is_string() ? found->get<std::string>() : "";
-}
-
-BudgetShare shareOf(const Json& components) {
+BudgetShare shareOf(const Budget& components) {
     BudgetShare share;
-    for (const Json& one : components) {
-        if (!one.is_object()) continue;
-        const double relative = numberAt(one, "median_relative");
-        const std::string correlation = textAt(one, "correlation");
-        if (correlation == "per cell" && textAt(one, "type") == "B") {
-            share.patch = share.cell = std::hypot(share.patch, std::sqrt(0.5) * relative);
+    for (const BudgetComponent& one : components) {
+        if (!std::isfinite(one.medianRelative)) continue;
+        if (one.correlation == Correlation::PerCell && one.type == 'B') {
+            share.patch = share.cell = std::hypot(share.patch, std::sqrt(0.5) * one.medianRelative);
         }
-        if (correlation == "per state") share.state = std::hypot(share.state, relative);
-        const bool tilt = textAt(one, "name") == "tilt of the sample";
-        if (correlation == "common" && !tilt) share.common = std::hypot(share.common, relative);
+        if (one.correlation == Correlation::PerState) {
+            share.state = std::hypot(share.state, one.medianRelative);
+        }
+        if (one.correlation == Correlation::Common && one.name != "tilt of the sample") {
+            share.common = std::hypot(share.common, one.medianRelative);
+        }
     }
     return share;
 }
@@ -43,19 +29,9 @@ BudgetShare shareOf(const Json& components) {
 
 BudgetShares budgetShares(const SampleSet& set) {
     BudgetShares shares(set.leds.size());
-    const Json budget = Json::parse(set.info.budgetJson, nullptr, false);
-    if (!budget.is_array()) return shares;
-    for (const Json& state : budget) {
-        if (!state.is_object()) continue;
-        const double led = numberAt(state, "led");
-        const std::string band = textAt(state, "band");
-        const auto components = state.find("components");
-        if (!(led >= 0 && led < static_cast<double>(shares.size()))) continue;
-        if (components == state.end() || !components->is_array()) continue;
-        for (const Band b : kBands) {
-            if (letter(b) != band) continue;
-            shares[static_cast<std::size_t>(led)][index(b)] = shareOf(*components);
-        }
+    for (const StateBudget& state : readBudget(set.info.budgetJson)) {
+        if (state.led < shares.size())
+            shares[state.led][index(state.band)] = shareOf(state.components);
     }
     return shares;
 }

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "proc/optics/cell_grid.h"
+#include "tests/estimate/scatterers.h"
 #include "tests/support/sample_sets.h"
 
 namespace gonio::proc {
@@ -29,6 +30,30 @@ TEST(SampleAlbedo, IsExactForAUniformSampleAndSaysWhatItMissed) {
         EXPECT_NEAR(albedo[band].value, times * 0.3 * seen, 1e-12);
         EXPECT_NEAR(albedo[band].missing, 1 - seen, 1e-12);
     }
+}
+
+TEST(SampleAlbedo, FillsWhatIsMissingWithAnswersAndTheirUncertainty) {
+    const LedTable led = uniform(0.3 / kPi);
+    const test::Made known([](const LightView&) {
+        Answer answer = test::answerOf(0.3 / kPi);
+        answer.uRandom = LedBands::all(0);
+        answer.uSystematic = LedBands::all(0.01 / kPi);
+        return answer;
+    });
+    const BandAlbedo cells = directionalAlbedo(led)[Band::R];
+    const BandAlbedo whole = filledAlbedo(led, known)[Band::R];
+    EXPECT_NEAR(whole.value, 0.3, 1e-12);
+    EXPECT_NEAR(whole.missing, 0, 1e-12);
+    EXPECT_NEAR(*whole.uRandom, *cells.uRandom, 1e-15);
+    EXPECT_NEAR(*whole.uSystematic, *cells.uSystematic + 0.01 * cells.missing, 1e-12);
+
+    const test::Made unknown([](const LightView&) { return test::answerOf(0.3 / kPi); });
+    EXPECT_NEAR(filledAlbedo(led, unknown)[Band::R].value, 0.3, 1e-12);
+    EXPECT_FALSE(filledAlbedo(led, unknown)[Band::R].u());
+    const test::Made silent(
+        [](const LightView&) { return Answer::none({Flag::Blocked}, Source::Model); });
+    EXPECT_EQ(filledAlbedo(led, silent)[Band::R].value, cells.value);
+    EXPECT_NEAR(filledAlbedo(led, silent)[Band::R].missing, cells.missing, 1e-12);
 }
 
 TEST(SampleAlbedo, UncertaintyIsThatOfManySamplesDrawn) {

@@ -43,8 +43,12 @@ std::vector<Streak> runsOf(const Xml& xml) {
     for (const XmlElement& path : xml.all("path")) {
         std::istringstream text(path.at("d"));
         Streak run{.colour = path.at("stroke")};
-        for (char m = 0, h = 0; text >> m >> run.x >> run.y >> h >> run.length;) {
-            EXPECT_TRUE(m == 'M' && h == 'h');
+        double x = 0, y = 0;
+        for (char m = 0, h = 0; text >> m >> x >> y >> h;) {
+            EXPECT_TRUE((m == 'M' || m == 'm') && h == 'h');
+            run.x = m == 'M' ? x : run.x + run.length + x;
+            run.y = m == 'M' ? y : run.y + y;
+            EXPECT_TRUE(text >> run.length);
             runs.push_back(run);
         }
         EXPECT_TRUE(text.eof());
@@ -203,6 +207,17 @@ TEST(HemisphereMap, LightBelowTheHorizonHasNoRing) {
     const Xml xml = mapOf(Answering([](const LightView&) { return test::nothing(); }), {120_deg});
     EXPECT_EQ(coloursOf(xml), std::set<std::string>{kGrey});
     for (const XmlElement& circle : xml.all("circle")) EXPECT_NE(circle.at("stroke"), "#d35400");
+}
+
+TEST(HemisphereMap, TellsAsManyColoursApartAsItIsAskedTo) {
+    const Answering wide(
+        [](const LightView& pair) { return same(std::exp(2 * pair.out.x() - 1)); });
+    for (int shades : {2, 16, 64}) {
+        const Xml xml = readPicture(
+            hemisphereMaps(wide, {.title = "a sample", .incidences = {0_deg}, .shades = shades}));
+        EXPECT_LE(coloursOf(xml).size(), static_cast<std::size_t>(shades));
+        EXPECT_GE(coloursOf(xml).size(), static_cast<std::size_t>(shades) / 3);
+    }
 }
 
 TEST(HemisphereMap, HoldsTheSmallestAndTheLargestNumbers) {

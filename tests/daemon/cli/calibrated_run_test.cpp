@@ -1,6 +1,7 @@
 // A whole laboratory session on a rig with the usual errors, with all that can be calibrated.
 
 #include "tests/daemon/cli/lab_bench.h"
+#include "tests/report/html.h"
 
 namespace gonio {
 namespace {
@@ -8,6 +9,21 @@ namespace {
 using test::Bench;
 using test::expectAccurate;
 using test::Json;
+using test::Ran;
+
+/// A report of the stored sample names its operator, and the calibrations with their ages.
+void expectReported(const Bench& gonio) {
+    const std::string file = gonio.program / "all.html";
+    gonio({"report", "sample:all", "-o", file, "--models", "none", "--estimator", "none"});
+    const std::string words = test::wordsOf(test::readHtml(test::textOf(file)));
+    EXPECT_NE(words.find(" Ada "), std::string::npos);
+    for (const char* row :
+         {" mirror 1 ", " black 6 ", " white 7 ", " flat 4 ", " leds 3 ", " sensor 2 ", " min "})
+        EXPECT_NE(words.find(row), std::string::npos) << row;
+    const Ran none = gonio.program({"report", "sample:nobody"});
+    EXPECT_EQ(none.exitCode, 6) << none.err;
+    EXPECT_NE(none.err.find("nobody"), std::string::npos) << none.err;
+}
 
 /// What each calibration says of the rig is what was wrong with it; a sample that was measured with
 /// all of them is good, and the same when it is worked out again.
@@ -42,6 +58,7 @@ TEST(CalibratedRun, WithAllThatCanBeCalibratedTheRigIsKnownAndTheSampleGood) {
            "model:lambert,albedo=0.3/0.1/0.05+ggx,alpha=0.2,f0=0.04",
            "--turned",
            "-45"});
+    gonio({"session", "new", "one", "--operator", "Ada"});
     const Json measured = gonio({"measure", "all", "--rotation", "-45"});
     EXPECT_EQ(measured["rotation_deg"], 315);
     EXPECT_EQ(measured["calibration"], "1+6+7+4+3+2") << "mirror, black, white, flat, leds, sensor";
@@ -52,6 +69,7 @@ TEST(CalibratedRun, WithAllThatCanBeCalibratedTheRigIsKnownAndTheSampleGood) {
         EXPECT_NE(verdict["grade"], "refused") << name << ' ' << verdict;
     expectAccurate(gonio({"sim", "score", measured["file"]})["samples"][0]);
     EXPECT_TRUE(gonio({"recalibrate", "all"})["identical"]);
+    expectReported(gonio);
 
     // The certificate says how far directions of the white differ; turned, it shows them.
     gonio({"sim", "place", "white", "--turned", "90"});

@@ -6,13 +6,13 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "tests/daemon/cli/program.h"
-#include "tests/support/json_schema.h"
+#include "tests/daemon/cli/documents.h"
 
 namespace gonio {
 namespace {
 
 using Json = nlohmann::json;
+using test::documentOf;
 using test::Program;
 using test::Ran;
 
@@ -149,16 +149,6 @@ TEST(Compare, TellsWhetherSurfacesAgree) {
     EXPECT_EQ(nothing.exitCode, 7) << nothing.err;
 }
 
-/// The documents of commands that answer as JSON hold to their schemas.
-Json documentOf(const Program& gonio, std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), "--json");
-    const Ran ran = gonio(arguments);
-    EXPECT_EQ(ran.exitCode, 0) << ran.err;
-    Json json = Json::parse(ran.out, nullptr, false);
-    EXPECT_EQ(test::complaintsOf(json), "");
-    return json;
-}
-
 TEST(Albedo, OfAModelIsExactAndOfATableWhatItIs) {
     const Program gonio;
     const Json lambert =
@@ -188,6 +178,12 @@ TEST(TradeLookup, TellsErrorsBytesAndTimes) {
         documentOf(gonio, {"trade", "lookup", "--quick", "-o", folder.string()})["rows"];
     EXPECT_GT(rows.size(), 6U);
     EXPECT_GT(test::textOf(folder / "trade-lookup.md").size(), 500U);
+    const std::string picture = test::textOf(folder / "trade-lookup.svg");
+    EXPECT_EQ(picture.find("<svg"), 0U);
+    for (const Json& row : rows) {
+        const std::string material = row["material"];
+        EXPECT_NE(picture.find(">" + material + "<"), std::string::npos) << material;
+    }
 }
 
 TEST(TradeNeighbours, TellsCostsByNumber) {

@@ -2,10 +2,8 @@
 // A laboratory's bench, by its command line: a daemon on the simulated rig, its store, and commands
 // that must succeed.
 
-#include <nlohmann/json.hpp>
-
+#include "tests/daemon/cli/documents.h"
 #include "tests/daemon/cli/running_daemon.h"
-#include "tests/support/json_schema.h"
 
 namespace gonio::test {
 
@@ -19,13 +17,7 @@ public:
 
     /// Runs a command that must succeed; its JSON.
     Json operator()(std::vector<std::string> arguments) const {
-        arguments.insert(arguments.begin(), "--json");
-        const Ran ran = program(arguments);
-        EXPECT_EQ(ran.exitCode, 0) << ran.err;
-        Json json = Json::parse(ran.out, nullptr, false);
-        EXPECT_FALSE(json.is_discarded()) << ran.out;
-        EXPECT_EQ(complaintsOf(json), "") << json;
-        return json;
+        return documentOf(program, std::move(arguments));
     }
     void calibrate(const std::string& systematic, int seed) const {
         place("mirror", systematic, seed);

@@ -1,0 +1,99 @@
+// `gonio report` and `gonio albedo` on a .gonio file.
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "proc/formats/gonio_exr.h"
+#include "tests/daemon/cli/documents.h"
+#include "tests/report/html.h"
+#include "tests/support/sample_sets.h"
+
+namespace gonio {
+namespace {
+
+using Json = nlohmann::json;
+using test::documentOf;
+using test::Ran;
+
+constexpr double kF = 0.1;  // of red, to 75 degrees of view; green has twice as much
+
+class OnASample : public testing::Test {
+protected:
+    OnASample() {
+        proc::SampleSet set = test::sampleSet([](Radians, const Direction&) { return kF; });
+        set.info.name = "<tile> & co";
+        EXPECT_TRUE(proc::writeGonio(file, set));
+    }
+    /// One line on stderr that says all of `words`.
+    void expectRefused(const std::vector<std::string>& arguments,
+                       int exitCode,
+                       const std::vector<std::string>& words) const {
+        const Ran ran = gonio(arguments);
+        EXPECT_EQ(ran.exitCode, exitCode) << ran.err;
+        EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+        for (const std::string& word : words)
+            EXPECT_NE(ran.err.find(word), std::string::npos) << word << " is not in: " << ran.err;
+    }
+    test::Program gonio;
+    const std::string file = (gonio / "tile.gonio").string();
+    const std::string page = (gonio / "tile.html").string();
+};
+
+TEST_F(OnASample, AReportIsOneWholePage) {
+    const Json told = documentOf(
+        gonio, {"report", file, "-o", page, "--models", "lambert", "--estimator", "specular-log"});
+    EXPECT_EQ(told["file"], page);
+    const std::string html = test::textOf(page);
+    EXPECT_EQ(told["bytes"], html.size());
+    const test::Xml xml = test::readHtml(html);
+    EXPECT_EQ(xml.all("h1").at(0).text, "BRDF of <tile> & co");
+    const std::string words = test::wordsOf(xml);
+    EXPECT_NE(words.find("specular-log"), std::string::npos);
+    EXPECT_NE(words.find("chosen"), std::string::npos) << "lambert";
+    EXPECT_NE(words.find("tile.gonio"), std::string::npos);
+    const auto cells = xml.all("td");
+    EXPECT_TRUE(std::any_of(cells.begin(), cells.end(), [](const auto& cell) {
+        return cell.text.size() == 64 &&
+               cell.text.find_first_not_of("0123456789abcdef") == std::string::npos;
+    })) << "the file's digest";
+}
+
+TEST_F(OnASample, AReportThatCannotBeMadeSaysWhy) {
+    constexpr int kUsage = 2, kFile = 6;
+    const std::string nowhere = (gonio / "no/folder/o.html").string();
+    expectRefused({"report", file, "-o", nowhere}, kFile, {"no folder", "no/folder"});
+    expectRefused({"report", file, "-o", gonio / "."}, kFile, {"is a folder"});
+    expectRefused({"report", file, "-o", "/dev/full", "--models", "none", "--estimator", "none"},
+                  kFile,
+                  {"/dev/full"});
+    expectRefused({"report", file, "--models", "banana"}, kUsage, {"banana", "lambert"});
+    expectRefused({"report", file, "--estimator", "banana"}, kUsage, {"banana", "shepard"});
+    expectRefused({"report", "model:lambert,albedo=0.5"}, kUsage, {"is a formula", "sample:NAME"});
+    expectRefused({"report", gonio / "none.gonio"}, kFile, {"none.gonio", "no such file"});
+    expectRefused({"report", gonio / "."}, kFile, {"not a file"});
+    expectRefused({"report", "sample:none"}, kFile, {"store"});
+    test::writeText(gonio / "noise.gonio", "this is no OpenEXR file");
+    expectRefused({"report", gonio / "noise.gonio"}, kFile, {"noise.gonio", "not an OpenEXR file"});
+    const std::string table = GONIO_SOURCE_DIR "/config/demo/AnoBlackEC1onAlum.bsdf";
+    expectRefused({"report", table}, kUsage, {"no measured sample", ".gonio"});
+}
+
+TEST_F(OnASample, AnAlbedoIsTheSumOverItsCells) {
+    const Json rows = documentOf(gonio, {"albedo", file, "--estimator", "none"})["rows"];
+    ASSERT_EQ(rows.size(), 5U);
+    const double seen = std::pow(std::sin(75 * M_PI / 180), 2);
+    for (std::size_t led = 0; led < 4; ++led) {
+        const Json& red = rows[led]["bands"]["r"];
+        // Floats in the file; 1 % random in some 15,000 cells, 2 % systematic.
+        EXPECT_NEAR(red["albedo"], M_PI * kF * seen, 1e-6);
+        EXPECT_NEAR(red["u_systematic"], 0.02 * M_PI * kF * seen, 1e-6);
+        EXPECT_LT(red["u_random"], 0.01 * 0.02 * M_PI * kF);
+        EXPECT_NEAR(red["missing"], 1 - seen, 1e-6);
+        EXPECT_NEAR(rows[led]["bands"]["g"]["albedo"], 2 * M_PI * kF * seen, 1e-6);
+    }
+    expectRefused({"albedo", file, "--estimator", "none", "--incidences", "10"}, 2, {"leave"});
+}
+
+}  // namespace
+}  // namespace gonio
