@@ -5,6 +5,7 @@
 
 #include "proc/estimate/grid_data.h"
 #include "proc/estimate/method_choice.h"
+#include "proc/estimate/rotations_estimator.h"
 #include "proc/estimate/scattered_estimator.h"
 #include "proc/estimate/seed004.h"
 #include "proc/formats/points_csv.h"
@@ -15,8 +16,8 @@ namespace {
 
 using Opened = std::shared_ptr<const Scatterer>;
 
-/// Relative noise of a table that says nothing of its own.
-constexpr double kAssumed = 0.01;
+/// A table says nothing of its noise.
+constexpr proc::DataOptions kTable{.assumedRelative = 0.01};
 
 using Prior = std::function<std::shared_ptr<const proc::PriorBasis>()>;
 
@@ -32,20 +33,40 @@ Result<Prior> priorOf(const EstimatorChoice& choice) {
     });
 }
 
-Result<Estimated> ofMaterial(Material material, const EstimatorChoice& choice) {
-    const bool turned =
-        material.sample != nullptr && proc::rotationsOf(*material.sample).size() > 1;
-    if (turned && choice.name != "auto" && choice.name != "none") {
-        return Error{ErrorKind::Usage,
-                     "a sample of several rotations, and --estimator " + choice.name +
-                         " takes one as isotropic; --estimator none, or first: gonio merge "
-                         "--isotropic"};
+std::vector<Radians> rotationsOf(const Material& material) {
+    if (material.sample != nullptr) return proc::rotationsOf(*material.sample);
+    std::vector<Radians> rotations;
+    for (const double deg : material.table->rotationDeg) {
+        rotations.push_back(proc::rotationOf(deg));
     }
-    if (choice.name == "none" || turned) {
+    return rotations;
+}
+
+/// Over one estimator per rotation.
+Result<Estimated> ofRotations(Material material,
+                              const std::vector<Radians>& rotations,
+                              const proc::SampleEstimatorOptions& options) {
+    auto made = material.sample != nullptr
+                    ? proc::RotationsEstimator::over(*material.sample, options)
+                    : proc::RotationsEstimator::over(
+                          material.scatterer, rotations, material.incidences(), kTable, options);
+    if (!made) return made.error();
+    return Estimated{Opened(std::move(*made)), std::move(material)};
+}
+
+Result<Estimated> ofMaterial(Material material, const EstimatorChoice& choice) {
+    if (choice.name == "none") {
         Opened lookup = material.scatterer;
         return Estimated{std::move(lookup), std::move(material)};
     }
+    const std::vector<Radians> rotations = rotationsOf(material);
     if (const auto seed = proc::seed004Named(choice.name)) {
+        if (rotations.size() > 1) {
+            return Error{ErrorKind::Usage,
+                         "a sample of several rotations, and --estimator " + choice.name +
+                             " takes one as isotropic; use auto, or first: gonio merge "
+                             "--isotropic"};
+        }
         auto made = material.sample != nullptr ? proc::makeSeed004(*material.sample, *seed)
                                                : proc::makeSeed004(*material.table, *seed);
         if (!made) return made.error();
@@ -55,11 +76,11 @@ Result<Estimated> ofMaterial(Material material, const EstimatorChoice& choice) {
     auto prior = priorOf(choice);
     if (!prior) return prior.error();
     options.prior = std::move(*prior);
+    if (rotations.size() > 1) return ofRotations(std::move(material), rotations, options);
     proc::BrdfData data =
         material.sample != nullptr
             ? proc::fitDataOf(*material.sample)
-            : proc::gridDataOf(
-                  *material.scatterer, material.incidences(), {.assumedRelative = kAssumed});
+            : proc::gridDataOf(*material.scatterer, material.incidences(), kTable);
     auto made = proc::SampleEstimator::over(material.scatterer, std::move(data), options);
     if (!made) return made.error();
     const proc::SampleEstimator* chosen = made->get();

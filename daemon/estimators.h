@@ -6,7 +6,8 @@
 //   shepard, axis-linear, grid-linear   the thesis's (proc/estimate/seed004.h), and beyond the
 //               angles its constant extrapolation, or another one: grid-linear:bezier
 //   and the names of methodNames(), one method of auto's without the choice.
-// All but none take a sample as isotropic: one of several rotations is looked up by auto, too.
+// A sample of several rotations has an estimator for each (rotations_estimator.h); the thesis's
+// take it as isotropic, and are refused.
 
 #include <filesystem>
 #include <memory>

@@ -8,7 +8,8 @@
 
 namespace gonio::proc {
 
-Coverage::Coverage(const BrdfData& data, const std::vector<bool>& groups) {
+Coverage::Coverage(const BrdfData& data, const std::vector<bool>& groups)
+    : exchanges_(data.exchanges) {
     const std::size_t cellCount = CellGrid::count();
     std::array<std::vector<bool>, 3> measured;  // by group and cell
     for (auto& band : measured) band.assign(data.incidences.size() * cellCount, false);

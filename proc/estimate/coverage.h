@@ -30,6 +30,8 @@ public:
     [[nodiscard]] std::array<Reach, 3> at(const LightView& pair) const;
     /// Whether the band was measured anywhere.
     [[nodiscard]] bool has(std::size_t band) const { return !kinds_[kindOf_[band]].deg.empty(); }
+    /// BrdfData::exchanges
+    [[nodiscard]] bool exchanges() const { return exchanges_; }
 
 private:
     /// What bands that were measured at the same places share.
@@ -45,6 +47,7 @@ private:
 
     std::vector<Kind> kinds_;
     std::array<std::size_t, 3> kindOf_{};  ///< by band
+    bool exchanges_;
 };
 
 /// The cell that a row is of or lies in; empty at the horizon.

@@ -45,8 +45,12 @@ ReciprocalAnswer reciprocalAnswer(const IncidenceMethod& method,
     const LightView straight = withLightAtZero(pair);
     const LightView exchanged = withLightAtZero({.in = pair.out, .out = pair.in});
     const std::array<Reach, 3> near = coverage.at(straight);
-    const std::array<Reach, 3> far = coverage.at(exchanged);
     ReciprocalAnswer answer{.value = method.at(straight), .ways = {}};
+    if (!coverage.exchanges()) {
+        for (std::size_t b = 0; b < 3; ++b) answer.ways[b] = {near[b], 0, beyond(near[b])};
+        return answer;
+    }
+    const std::array<Reach, 3> far = coverage.at(exchanged);
     for (std::size_t b = 0; b < 3; ++b) answer.ways[b] = wayOf(near[b], far[b]);
     if (!method.anchored()) return answer;
     const MethodAnswer one = answer.value;

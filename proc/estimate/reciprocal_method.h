@@ -7,6 +7,8 @@
 // so that at an incidence that was measured its own values stand to 1e-6. A method that is not
 // anchored is reciprocal by itself and is asked once.
 //
+// Where light and view may not be exchanged (BrdfData::exchanges), a pair is asked as it is alone.
+//
 // Near a pair that is its own exchange (the mirror direction, retroreflection) both ways are made
 // of the same cells: their random errors are taken as common where the ways are one, as independent
 // where they are a degree apart.

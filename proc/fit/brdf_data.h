@@ -58,6 +58,9 @@ struct BrdfData {
     std::vector<Radians> incidences;  ///< of the groups, ascending (of one rotation)
     BudgetShares shared;              ///< by group: errors shared by its values; empty: none
     BandCount bands = BandCount::Three;
+    /// What was measured of a pair holds with light and view exchanged: not of one rotation of an
+    /// anisotropic sample, whose exchanged pairs belong to other azimuths of the light.
+    bool exchanges = true;
     bool uKnown = true;
     double assumedRelative = 0;  ///< what was assumed where u is not known
     std::size_t leftOut = 0;     ///< pairs or cells

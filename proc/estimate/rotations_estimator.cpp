@@ -1,0 +1,126 @@
+#include "proc/estimate/rotations_estimator.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "proc/estimate/answer_blend.h"
+#include "proc/estimate/grid_data.h"
+#include "proc/table/axis.h"
+#include "proc/table/rotations.h"
+
+namespace gonio::proc {
+namespace {
+
+/// Sees its pairs as the surface does that lies turned by r.
+class Turned final : public Scatterer {
+public:
+    Turned(std::shared_ptr<const Scatterer> surface, Radians rotation)
+        : surface_(std::move(surface)), rotation_(rotation) {}
+    [[nodiscard]] Answer answer(const LightView& pair) const override {
+        const LightView level = withLightAtZero(pair);
+        return surface_->answer(
+            {.in = level.in.turned(-rotation_), .out = level.out.turned(-rotation_)});
+    }
+    [[nodiscard]] BandCount bandCount() const override { return surface_->bandCount(); }
+
+private:
+    std::shared_ptr<const Scatterer> surface_;  ///< shared by all rotations
+    Radians rotation_;
+};
+
+/// Between which two nodes of a circle, however far apart.
+AxisPlace around(const std::vector<double>& deg, double at) {
+    const auto next = std::upper_bound(deg.begin(), deg.end(), at);
+    const std::size_t high = next == deg.end() ? 0 : static_cast<std::size_t>(next - deg.begin());
+    const std::size_t low = high == 0 ? deg.size() - 1 : high - 1;
+    const auto forward = [](double from, double to) {
+        const double turn = std::fmod(to - from, 360);
+        return turn < 0 ? turn + 360 : turn;
+    };
+    const double gap = forward(deg[low], deg[high]);
+    return {low, high, gap > 0 ? forward(deg[low], at) / gap : 0};
+}
+
+double turnOf(double degrees) {
+    const double turn = std::fmod(degrees, 360);
+    return turn < 0 ? turn + 360 : turn;
+}
+
+/// What lies between two rotations may be as wrong as they differ.
+void widen(Answer& answer, const Answer& low, const Answer& high, double t) {
+    if (!answer.uSystematic) return;
+    for (const Band band : kBands) {
+        const double own = 2 * t * (1 - t) * std::abs(high.f[band] - low.f[band]);
+        if (!std::isnan(own))
+            (*answer.uSystematic)[band] = std::hypot((*answer.uSystematic)[band], own);
+    }
+}
+
+}  // namespace
+
+RotationsEstimator::RotationsEstimator(std::vector<Turn> turns) : turns_(std::move(turns)) {
+    for (const Turn& turn : turns_) deg_.push_back(turn.rotation.degrees());
+}
+
+Result<std::unique_ptr<const RotationsEstimator>> RotationsEstimator::over(
+    const SampleSet& set, const SampleEstimatorOptions& options) {
+    std::vector<Turn> turns;
+    for (const Radians rotation : rotationsOf(set)) {
+        SampleSet part = atRotation(set, rotation);
+        turnTo(part, Radians());
+        BrdfData data = fitDataOf(part);
+        data.exchanges = false;
+        auto made = SampleEstimator::over(
+            std::make_shared<const SampleLookup>(std::move(part)), std::move(data), options);
+        if (!made) return made.error();
+        turns.push_back({rotation, std::move(*made)});
+    }
+    return std::unique_ptr<const RotationsEstimator>(new RotationsEstimator(std::move(turns)));
+}
+
+Result<std::unique_ptr<const RotationsEstimator>> RotationsEstimator::over(
+    const std::shared_ptr<const Scatterer>& measured,
+    std::vector<Radians> rotations,
+    const std::vector<Radians>& incidences,
+    const DataOptions& assumed,
+    const SampleEstimatorOptions& options) {
+    std::sort(rotations.begin(), rotations.end());
+    std::vector<Turn> turns;
+    for (const Radians rotation : rotations) {
+        auto part = std::make_shared<const Turned>(measured, rotation);
+        BrdfData data = gridDataOf(*part, incidences, assumed);
+        data.exchanges = false;
+        auto made = SampleEstimator::over(std::move(part), std::move(data), options);
+        if (!made) return made.error();
+        turns.push_back({rotation, std::move(*made)});
+    }
+    return std::unique_ptr<const RotationsEstimator>(new RotationsEstimator(std::move(turns)));
+}
+
+BandCount RotationsEstimator::bandCount() const { return turns_.front().estimator->bandCount(); }
+
+Answer RotationsEstimator::ofTurn(std::size_t turn, const LightView& pair) const {
+    // At the normal the view alone says how the sample lay.
+    const bool normal = pair.in.theta() < 1e-6_deg;
+    const LightView at{.in = pair.in,
+                       .out = normal ? pair.out.turned(turns_[turn].rotation) : pair.out};
+    return turns_[turn].estimator->answer(at);
+}
+
+Answer RotationsEstimator::answer(const LightView& pair) const {
+    const double at = turnOf(-pair.in.phi().degrees());
+    const auto enclosed = placeOnCircle(deg_, at);
+    const AxisPlace place = enclosed.value_or(around(deg_, at));
+    const Answer low = ofTurn(place.low, pair);
+    if (place.atNode()) return low;
+    const Answer high = ofTurn(place.high, pair);
+    AnswerBlend blend;
+    blend.add(1 - place.t, low);
+    blend.add(place.t, high);
+    const Source source = low.source == Source::Measured ? Source::Interpolated : low.source;
+    Answer answer = blend.sum(enclosed ? source : Source::Extrapolated);
+    widen(answer, low, high, place.t);
+    return answer;
+}
+
+}  // namespace gonio::proc
