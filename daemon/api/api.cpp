@@ -13,7 +13,6 @@
 #include "daemon/problem.h"
 #include "proc/core/number_text.h"
 #include "proc/formats/file_bytes.h"
-#include "proc/table/rotations.h"
 
 namespace gonio::daemon {
 namespace {
@@ -287,11 +286,9 @@ Result<ApiReply> postJob(const Call& call) {
         return Error{ErrorKind::Usage, "monte_carlo: wanted a whole number"};
     }
     job.monteCarlo = static_cast<int>(draws);
-    if (!(std::abs(rotation) <= 360)) {
-        return Error{ErrorKind::Usage,
-                     "rotation_deg: " + shortest(rotation) + ", wanted -360 to 360 degrees"};
-    }
-    job.rotation = proc::rotationOf(rotation);
+    const Result<Radians> turned = parseRotation(rotation);
+    if (!turned) return turned.error();
+    job.rotation = *turned;
     if (effortName) {
         const Result<Effort> effort = parseEffort(*effortName);
         if (!effort) return effort.error();

@@ -9,6 +9,7 @@
 #include "daemon/cli/commands.h"
 #include "daemon/cli/goal_options.h"
 #include "daemon/cli/interrupt.h"
+#include "daemon/engine/job.h"
 #include "daemon/store.h"
 #include "proc/core/log.h"
 #include "proc/core/number_text.h"
@@ -179,6 +180,8 @@ void Program::addMeasuring() {
             if (!wanted) return wanted.error();
             measure.goal = *wanted;
             if (Result<void> good = checkSampleName(measure.name); !good) return good;
+            const auto rotation = parseRotation(measure.rotationDegrees);
+            if (!rotation) return rotation.error().in("measure");
             return daemon::measure(common, measure);
         });
     sub->add_option("name", measure.name, "the sample's name")->required();
@@ -198,8 +201,7 @@ void Program::addMeasuring() {
     sub->add_option("--rotation",
                     measure.rotationDegrees,
                     "how far the sample is turned about its normal, counter-clockwise seen from "
-                    "above, degrees (kept with the sample)")
-        ->check(CLI::Range(-360.0, 360.0));
+                    "above, degrees (kept with the sample)");
     sub->add_option("-o,--output", measure.output, "also write the .gonio here");
 
     sub = command(app,

@@ -3,6 +3,9 @@
 #include <array>
 #include <cmath>
 
+#include "proc/core/number_text.h"
+#include "proc/table/rotations.h"
+
 namespace gonio::daemon {
 namespace {
 
@@ -45,6 +48,12 @@ Result<JobKind> parseJobKind(std::string_view text) {
         list += (i == 0 ? "" : ", ") + std::string(kKinds[i]);
     }
     return Error{ErrorKind::Usage, "job '" + std::string(text) + "': wanted one of " + list};
+}
+
+Result<Radians> parseRotation(double degrees) {
+    if (std::abs(degrees) <= 360) return proc::rotationOf(degrees);
+    return Error{ErrorKind::Usage,
+                 "rotation: " + shortest(degrees) + ", wanted -360 to 360 degrees"};
 }
 
 Result<void> check(const JobRequest& request) {

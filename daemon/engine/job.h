@@ -36,6 +36,9 @@ enum class JobKind {
 /// "calibrate-mirror", ..., "recalibrate"; anything else is a Usage error that lists them.
 [[nodiscard]] Result<JobKind> parseJobKind(std::string_view text);
 
+/// As tables keep it (proc/table/rotations.h); a Usage error unless it is -360 to 360 degrees.
+[[nodiscard]] Result<Radians> parseRotation(double degrees);
+
 struct JobRequest {
     JobKind kind = JobKind::Measure;
     std::string name;         ///< of the sample to measure or recalibrate; empty for the others

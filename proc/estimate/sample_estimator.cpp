@@ -6,6 +6,7 @@
 
 #include "proc/estimate/reciprocal_method.h"
 #include "proc/optics/cell_grid.h"
+#include "proc/table/rotations.h"
 
 namespace gonio::proc {
 namespace {
@@ -133,6 +134,11 @@ SampleEstimator::SampleEstimator(std::shared_ptr<const Scatterer> measured,
 
 Result<std::unique_ptr<const SampleEstimator>> SampleEstimator::over(
     SampleSet set, SampleEstimatorOptions options) {
+    if (rotationsOf(set).size() > 1) {
+        return Error{ErrorKind::Usage,
+                     "estimate: a sample of several rotations is not taken as isotropic; look it "
+                     "up, or average its rotations"};
+    }
     BrdfData data = fitDataOf(set);
     auto lookup = std::make_shared<const SampleLookup>(std::move(set));  // the estimator's own
     return over(std::move(lookup), std::move(data), std::move(options));

@@ -47,7 +47,8 @@ struct SampleEstimatorOptions {
 
 class SampleEstimator final : public Scatterer {
 public:
-    /// A Usage error for a method that is none or cannot be made of the sample, a Quality error
+    /// A Usage error for a sample of several rotations, and for a method that is none or cannot be
+    /// made of the sample; a Quality error
     /// where nothing in it can be used. With "auto" the choice is made at the first question that a
     /// measured cell does not answer.
     [[nodiscard]] static Result<std::unique_ptr<const SampleEstimator>> over(

@@ -31,9 +31,11 @@ Verdict ofSymmetry(const std::string& name,
 }  // namespace
 
 Verdict planeVerdict(const SampleSet& sample, const QualityLimits& limits) {
+    const std::vector<Radians> rotations = rotationsOf(sample);
     Consistency found;
-    for (const Radians rotation : rotationsOf(sample)) {
-        const Consistency one = planeConsistency(tablesAt(sample, rotation));
+    if (rotations.size() == 1) found = planeConsistency(sample);
+    for (std::size_t i = 0; rotations.size() > 1 && i < rotations.size(); ++i) {
+        const Consistency one = planeConsistency(tablesAt(sample, rotations[i]));
         const bool worse = found.freedom == 0 || one.perFreedom() > found.perFreedom();
         if (one.freedom > 0 && worse) found = one;
     }

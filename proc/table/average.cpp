@@ -116,7 +116,7 @@ private:
     static Present presentIn(const std::vector<Part>& parts, std::size_t cell) {
         Present present;
         for (const Part& part : parts) {
-            if (!part.cells->present(cell)) continue;
+            if (!canAverage(*part.cells, cell)) continue;
             const Measured<double> value = part.cells->at(cell);
             present.values.push_back({value, apartFrom(value, part.shared)});
             present.parts.push_back(&part);
@@ -168,7 +168,8 @@ private:
         for (std::size_t cell = 0; cell < mean.size(); ++cell) {
             for (const Part& part : parts) {
                 mean.flags[cell] = mean.flags[cell] | part.cells->flags[cell];
-                if (part.cells->present(cell)) mean.nEff[cell] += part.cells->nEff[cell];
+                mean.flags[cell].clear(Flag::Measured);
+                if (canAverage(*part.cells, cell)) mean.nEff[cell] += part.cells->nEff[cell];
             }
             Present present = presentIn(parts, cell);
             if (present.values.empty()) continue;

@@ -11,9 +11,9 @@
 // the same, all of it else. The cells are then held against k_i m. Both go into a chi-square of
 // their own; f itself is averaged as it was measured, k_i included.
 //
-// A cell that is missing in some captures is the mean of the others; missing in all, it stays
-// missing. Without a budget all of u_systematic is taken as each capture's own, in its cells and as
-// its light: chi-square is then too small.
+// A cell that is missing, or has no uncertainty, in some captures is the mean of the others; in
+// all, it is missing. Without a budget all of u_systematic is taken as each capture's own, in its
+// cells and as its light: chi-square is then too small.
 
 #include <array>
 #include <cstddef>

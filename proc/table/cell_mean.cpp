@@ -34,6 +34,11 @@ std::vector<double> weightsOf(std::span<const CellValue> values) {
 
 }  // namespace
 
+bool canAverage(const CellSamples& cells, std::size_t cell) {
+    return cells.present(cell) && std::isfinite(cells.f[cell]) &&
+           std::isfinite(cells.uRandom[cell]) && std::isfinite(cells.uSystematic[cell]);
+}
+
 CellMean meanOf(std::span<const CellValue> values) {
     CellMean result{.mean = values.front().value, .group = {}, .away = {0}};
     if (values.size() == 1) return result;

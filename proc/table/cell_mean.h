@@ -18,6 +18,7 @@
 #include <span>
 #include <vector>
 
+#include "proc/calibrate/cell_samples.h"
 #include "proc/core/measured.h"
 #include "proc/table/consistency.h"
 
@@ -39,6 +40,9 @@ struct CellMean {
     /// sqrt(chi^2 / degrees of freedom), at least 1; 1 where no value is an outlier.
     [[nodiscard]] double widening() const;
 };
+
+/// A cell that can be averaged: present, with a value and uncertainties.
+[[nodiscard]] bool canAverage(const CellSamples& cells, std::size_t cell);
 
 /// At least one value.
 [[nodiscard]] CellMean meanOf(std::span<const CellValue> values);

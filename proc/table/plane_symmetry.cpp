@@ -15,7 +15,7 @@ template <class Use>
 void forEachPair(const CellSamples& cells, double shared, const Use& use) {
     for (std::size_t cell = 0; cell < cells.size(); ++cell) {
         const std::size_t image = mirroredCell(cell);
-        if (image <= cell || !cells.present(cell) || !cells.present(image)) continue;
+        if (image <= cell || !canAverage(cells, cell) || !canAverage(cells, image)) continue;
         const Measured<double> one = cells.at(cell), other = cells.at(image);
         const std::array<CellValue, 2> values{
             {{one, apartFrom(one, shared)}, {other, apartFrom(other, shared)}}};

@@ -20,7 +20,7 @@ struct Sight {
 
 std::optional<Sight> sightOf(const CellSamples& cells, const Direction& wo, double shared) {
     const auto cell = CellGrid::cellAt(wo);
-    if (!cell || !cells.usable(*cell)) return std::nullopt;
+    if (!cell || !cells.usable(*cell) || !canAverage(cells, *cell)) return std::nullopt;
     double f = 0;
     const CellBlend around(wo);
     for (const CellWeight& one : around.cells()) {

@@ -261,18 +261,18 @@ TEST_F(ProgramDocuments, OfMergedFilesConform) {
     EXPECT_EQ(merged["rotations_deg"], (std::vector<double>{0, 90}));
     EXPECT_EQ(expectConforms({"info", out})["leds"][3]["rotation_deg"], 90);
 
-    // The bands of a surface apart, as Zemax files hold it, and together again.
-    std::vector<std::string> bands{"merge", "-o", (gonio / "rgb.csv").string()};
-    set.leds.resize(1);
-    ASSERT_TRUE(proc::writeGonio(gonio / "one.gonio", set));
-    expectConforms({"convert", (gonio / "one.gonio").string(), (gonio / "one.bsdf").string()});
-    for (const char* band : {"R", "G", "B"})
-        bands.push_back((gonio / ("one_" + std::string(band) + ".bsdf")).string());
+    // Three tables of one band each, told apart by their names.
+    std::vector<std::string> bands{"merge"};
+    for (const char* band : {"R", "G", "B"}) {
+        bands.push_back((gonio / ("tile_" + std::string(band) + ".bsdf")).string());
+        test::writeText(bands.back(), test::smallZemax());
+    }
+    bands.insert(bands.end(), {"-o", (gonio / "rgb.csv").string()});
     const Json channels = expectConforms(bands);
     EXPECT_EQ(channels["channels"]["g"]["estimated"], 0);
     EXPECT_EQ(channels["channels"]["b"]["partners"], channels["channels"]["r"]["partners"]);
     EXPECT_NE(test::textOf(gonio / "rgb.csv").find("f_r,f_g,f_b,flags_r"), std::string::npos);
-    bands[2] = out;  // a .gonio wants uncertainties
+    bands.back() = out;  // a .gonio wants uncertainties
     const test::Ran refused = gonio(bands);
     EXPECT_EQ(refused.exitCode, 2);
     EXPECT_NE(refused.err.find("-o OUT.csv"), std::string::npos) << refused.err;

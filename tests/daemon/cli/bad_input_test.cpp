@@ -142,6 +142,14 @@ TEST_F(BadInput, WrongCommandLinesAreUsageErrors) {
                   kUsage,
                   {"exclude each other"});
     expectRefused(gonio({"measure", "../x"}), kUsage, {"../x"});
+    for (const std::string rotation : {"361", "-360.5", "nan", "north"}) {
+        expectRefused(gonio({"measure", "x", "--rotation=" + rotation}), kUsage, {"rotation"});
+    }
+    expectRefused(gonio({"merge", "a.gonio", "-o", "out.bsdf"}), kUsage, {"OUT.gonio or OUT.csv"});
+    expectRefused(gonio({"merge", "a.gonio"}), kUsage, {"--output"});
+    expectRefused(gonio({"merge", "none.gonio", "-o", "out.gonio"}), kFile, {"none.gonio"});
+    expectRefused(
+        gonio({"merge", "model:lambert,albedo=0.5", "-o", "o.csv"}), kUsage, {"lambert", "files"});
     expectRefused(gonio({"info", "sample:../../etc/passwd"}), kFile, {"there is none"});
     expectRefused(gonio({"verify-white", "--limit", "0.5"}), kUsage, {"--limit", "1%"});
     expectRefused(gonio({"export", kRealFile, "-o", "x", "--formats", "doc"}), kUsage, {"doc"});

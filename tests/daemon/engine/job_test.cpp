@@ -66,6 +66,7 @@ TEST(JobCheck, OnlyASampleThatIsMeasuredHasABackingAndOneToHoldItAgainst) {
          {JobRequest{.name = "a", .against = "b"},
           JobRequest{.name = "a", .backing = Backing::White, .against = "../b"},
           JobRequest{.kind = JobKind::Recalibrate, .name = "a", .backing = Backing::White},
+          JobRequest{.kind = JobKind::Recalibrate, .name = "a", .rotation = 45_deg},
           JobRequest{.kind = JobKind::CalibrateWhite, .backing = Backing::White}}) {
         const auto refused = check(bad);
         ASSERT_FALSE(refused) << bad.against;
