@@ -38,8 +38,8 @@ thead th { background: var(--shade); }
 .doubtful { color: var(--doubtful); font-weight: 600; white-space: nowrap; }
 .bad { color: var(--bad); font-weight: 600; white-space: nowrap; }
 figure { margin: 1rem 0; }
-figure svg { display: block; max-width: 100%; height: auto; background: #ffffff;
-  border: 1px solid var(--line); }
+figure svg { display: block; box-sizing: border-box; max-width: 100%; height: auto;
+  background: #ffffff; border: 1px solid var(--line); }
 figcaption { font-size: .87rem; color: var(--faint); max-width: 48rem; margin-top: .3rem; }
 @page { size: A4; margin: 16mm 14mm; }
 @media print { html { font-size: 10.5px; }
