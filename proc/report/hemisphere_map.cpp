@@ -197,6 +197,7 @@ void drawHeading(Svg& svg, const PlotRequest& request) {
 std::string hemisphereMaps(const Scatterer& scatterer, const PlotRequest& request) {
     const std::span<const Band> bands = shownBands(scatterer);
     std::vector<Panel> panels;
+    panels.reserve(request.incidences.size());
     for (Radians incidence : request.incidences) panels.push_back(evaluate(scatterer, incidence));
     const LogAxis axis = axisOf(panels, bands);
 

@@ -86,6 +86,7 @@ std::string rowOf(const std::vector<HtmlCell>& cells) {
 
 void HtmlTable::add(const std::vector<std::string>& words) {
     std::vector<HtmlCell> row;
+    row.reserve(words.size());
     for (const std::string& one : words) row.push_back({one});
     rows.push_back(std::move(row));
 }
