@@ -5,6 +5,7 @@ find_package(spdlog REQUIRED)
 find_package(Ceres REQUIRED)
 find_path(NANOFLANN_INCLUDE nanoflann.hpp REQUIRED)  # headers only
 find_package(OpenEXR REQUIRED)
+find_package(PNG REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(PkgConfig REQUIRED)

@@ -74,8 +74,9 @@ cat <<END
 
 Written to $out/: .gonio (everything, with uncertainties), .bsdf, .csv, .svg, summary.json
 
-Three commands to try next, from this folder:
+Four commands to try next, from this folder:
     $relative/gonio info $out/metal.gonio
+    $relative/gonio report $out/metal.gonio -o $out/metal.html
     $relative/goniod --rig sim --store $out/store &
     $relative/gonio --store $out/store sim place model:ggx,alpha=0.1,f0=0.5 && $relative/gonio --store $out/store measure mine
 END

@@ -1,6 +1,8 @@
 #include "proc/report/fit_tables.h"
 
+#include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "proc/core/number_text.h"
 #include "proc/report/plot_request.h"
@@ -8,6 +10,8 @@
 
 namespace gonio::proc {
 namespace {
+
+constexpr std::size_t kMostMisfits = 6;
 
 HtmlCell verdictOf(const Selection& selection, std::size_t at) {
     const RankedFit& one = selection.ranked[at];
@@ -90,14 +94,18 @@ HtmlTable parameterTable(const Selection& selection) {
 }
 
 HtmlTable misfitTable(const Selection& selection) {
-    HtmlTable table{.caption = "Where the best fit misses most",
+    const std::size_t shown = std::min(kMostMisfits, selection.worst.size());
+    HtmlTable table{.caption =
+                        "Where the best fit misses most. What an LED and band share, or a patch of "
+                        "directions, is in these "
+                        "figures; chi-square above takes it for what the budget says that it is",
                     .head = {"light at",
                              "region",
                              "mean square of (f - model) / u",
                              "f over the model",
                              "values"},
                     .rows = {}};
-    for (const Misfit& one : selection.worst) {
+    for (const Misfit& one : std::span(selection.worst).first(shown)) {
         table.add({degreesLabel(one.incidence),
                    one.region,
                    significant(one.chiSquare, 3),

@@ -11,7 +11,7 @@ namespace gonio::proc {
 [[nodiscard]] HtmlTable fitTable(const Selection& selection);
 /// Values of the usable fits' parameters with U (k = 2); what a bound holds says so.
 [[nodiscard]] HtmlTable parameterTable(const Selection& selection);
-/// Where the best fit misses most.
+/// Where the best fit misses most, six regions at most.
 [[nodiscard]] HtmlTable misfitTable(const Selection& selection);
 
 }  // namespace gonio::proc

@@ -1,20 +1,24 @@
 #include "proc/report/hemisphere_map.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <optional>
 
 #include "proc/core/number_text.h"
 #include "proc/core/parallel.h"
 #include "proc/report/colour_ramp.h"
+#include "proc/report/png.h"
 #include "proc/report/svg.h"
 
 namespace gonio::proc {
 namespace {
 
-constexpr int kRaster = 181;  // pixels across: one degree and one user unit each
-constexpr int kMostShades = 64;
+constexpr int kRaster = 181;    // pixels across: one degree and one user unit each
+constexpr int kShades = 64;     // colours told apart; runs of one colour are one stroke
+constexpr int kNoData = 64;     // the shade behind them
 constexpr int kOutside = -1;    // at or below the horizon
 constexpr double kPanel = 200;  // user units between panel corners
 constexpr double kLeft = 70, kTop = 76, kRight = 90, kBottom = 4;
@@ -64,38 +68,40 @@ LogAxis axisOf(const std::vector<Panel>& panels, std::span<const Band> bands) {
     return LogAxis::covering(std::max(lowest, highest * 1e-6), highest);
 }
 
-/// Colours along an axis; runs of one colour are one stroke.
-struct Scale {
-    LogAxis axis;
-    int shades = kMostShades;
+int shadeOf(double f, const LogAxis& axis) {
+    if (!std::isfinite(f)) return kNoData;
+    return std::min(kShades - 1, static_cast<int>(axis.position(f) * kShades));
+}
 
-    /// That of no number stands behind the others.
-    [[nodiscard]] int shadeOf(double f) const {
-        if (!std::isfinite(f)) return shades;
-        return std::min(shades - 1, static_cast<int>(axis.position(f) * shades));
+std::string colourOf(int shade) {
+    return shade == kNoData ? std::string(kGrey) : rampColour((shade + 0.5) / kShades);
+}
+
+/// Of each pixel, row by row; kOutside beyond the disc.
+std::vector<int> shadesOf(const Panel& panel, Band band, const LogAxis& axis) {
+    std::vector<int> shades(panel.size(), kOutside);
+    for (int row = 0; row < kRaster; ++row) {
+        for (int column = 0; column < kRaster; ++column) {
+            const std::size_t at = pixel(column, row);
+            if (directionAt(column, row)) shades[at] = shadeOf(panel[at][band], axis);
+        }
     }
-    [[nodiscard]] std::string colourOf(int shade) const {
-        return shade == shades ? std::string(kGrey) : rampColour((shade + 0.5) / shades);
-    }
-};
+    return shades;
+}
 
 /// Pixels of a row that have one shade.
 struct Run {
     int row = 0, begin = 0, end = 0;
 };
 
-/// By shade; the last has no number.
-std::vector<std::vector<Run>> runsOf(const Panel& panel, Band band, const Scale& scale) {
-    std::vector<std::vector<Run>> runs(static_cast<std::size_t>(scale.shades) + 1);
-    const auto shadeAt = [&](int column, int row) {
-        if (column == kRaster || !directionAt(column, row)) return kOutside;
-        return scale.shadeOf(panel[pixel(column, row)][band]);
-    };
+/// By shade.
+std::array<std::vector<Run>, kShades + 1> runsOf(const std::vector<int>& shades) {
+    std::array<std::vector<Run>, kShades + 1> runs;
     for (int row = 0; row < kRaster; ++row) {
         int begin = 0;
         int current = kOutside;
         for (int column = 0; column <= kRaster; ++column) {
-            const int shade = shadeAt(column, row);
+            const int shade = column == kRaster ? kOutside : shades[pixel(column, row)];
             if (shade == current) continue;
             if (current != kOutside)
                 runs[static_cast<std::size_t>(current)].push_back({row, begin, column});
@@ -122,12 +128,39 @@ std::string pathOf(const std::vector<Run>& runs, Point corner) {
     return path;
 }
 
-void drawRaster(Svg& svg, Point corner, const Panel& panel, Band band, const Scale& scale) {
-    const auto runs = runsOf(panel, band, scale);
-    for (int shade = 0; shade <= scale.shades; ++shade) {
+/// "#rrggbb".
+Rgba opaque(const std::string& colour) {
+    const auto byte = [&](std::size_t at) {
+        return static_cast<std::uint8_t>(std::stoi(colour.substr(at, 2), nullptr, 16));
+    };
+    return {byte(1), byte(3), byte(5), 255};
+}
+
+/// What is outside has the last colour, which is none.
+IndexedPicture pictureOf(const std::vector<int>& shades) {
+    IndexedPicture picture{.width = kRaster, .height = kRaster, .pixels = {}, .colours = {}};
+    for (int shade = 0; shade <= kNoData; ++shade)
+        picture.colours.push_back(opaque(colourOf(shade)));
+    picture.colours.push_back({0, 0, 0, 0});
+    for (const int shade : shades)
+        picture.pixels.push_back(
+            static_cast<std::uint8_t>(shade == kOutside ? kNoData + 1 : shade));
+    return picture;
+}
+
+void drawRuns(Svg& svg, Point corner, const std::vector<int>& shades) {
+    const auto runs = runsOf(shades);
+    for (int shade = 0; shade <= kNoData; ++shade) {
         const std::string path = pathOf(runs[static_cast<std::size_t>(shade)], corner);
-        if (!path.empty()) svg.runs(path, scale.colourOf(shade));
+        if (!path.empty()) svg.runs(path, colourOf(shade));
     }
+}
+
+void drawRaster(Svg& svg, Point corner, const std::vector<int>& shades, bool embedded) {
+    if (!embedded) return drawRuns(svg, corner, shades);
+    const auto png = encodePng(pictureOf(shades));
+    if (!png) return drawRuns(svg, corner, shades);
+    svg.image(corner, {kRaster, kRaster}, pngUri(*png));
 }
 
 /// Rings at 30, 60 and 90 degrees, and one about the light.
@@ -142,12 +175,10 @@ void drawRings(Svg& svg, Point corner, Radians incidence) {
     svg.circle(light, 3.5, {.colour = "#d35400", .width = 1.4, .dash = ""});
 }
 
-void drawScale(Svg& svg, Point corner, double height, const Scale& scale) {
+void drawScale(Svg& svg, Point corner, double height, const LogAxis& axis) {
     // Each shade reaches up to the end and the next one lies over it: no seams.
-    const LogAxis& axis = scale.axis;
-    for (int shade = 0; shade < scale.shades; ++shade) {
-        svg.rectangle(
-            corner, {14, height * (scale.shades - shade) / scale.shades}, scale.colourOf(shade));
+    for (int shade = 0; shade < kShades; ++shade) {
+        svg.rectangle(corner, {14, height * (kShades - shade) / kShades}, colourOf(shade));
     }
     for (int decade = axis.firstDecade; decade <= axis.lastDecade; ++decade) {
         const double y = corner.y + height * (1 - axis.position(std::pow(10.0, decade)));
@@ -166,8 +197,9 @@ void drawHeading(Svg& svg, const PlotRequest& request) {
 std::string hemisphereMaps(const Scatterer& scatterer, const PlotRequest& request) {
     const std::span<const Band> bands = shownBands(scatterer);
     std::vector<Panel> panels;
+    panels.reserve(request.incidences.size());
     for (Radians incidence : request.incidences) panels.push_back(evaluate(scatterer, incidence));
-    const Scale scale{axisOf(panels, bands), std::clamp(request.shades, 2, kMostShades)};
+    const LogAxis axis = axisOf(panels, bands);
 
     const double width = static_cast<double>(bands.size()) * kPanel;
     const double height = static_cast<double>(panels.size()) * kPanel;
@@ -179,7 +211,7 @@ std::string hemisphereMaps(const Scatterer& scatterer, const PlotRequest& reques
         svg.text({10, top + 101}, degreesLabel(request.incidences[row]));
         for (Band band : bands) {
             const Point corner{kLeft + static_cast<double>(index(band)) * kPanel, top};
-            drawRaster(svg, corner, panels[row], band, scale);
+            drawRaster(svg, corner, shadesOf(panels[row], band, axis), request.embedded);
             drawRings(svg, corner, request.incidences[row]);
         }
     }
@@ -188,7 +220,7 @@ std::string hemisphereMaps(const Scatterer& scatterer, const PlotRequest& reques
         const double middle = kLeft + static_cast<double>(index(band)) * kPanel + kRaster / 2.0;
         svg.text({middle, kTop - 12}, bandLabel(scatterer, band), Anchor::Middle, 12);
     }
-    drawScale(svg, {kLeft + width + 4, kTop}, height - (kPanel - kRaster), scale);
+    drawScale(svg, {kLeft + width + 4, kTop}, height - (kPanel - kRaster), axis);
     svg.text({kLeft + width, kTop - 12}, request.quantity);
     return svg.document();
 }

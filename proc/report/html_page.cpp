@@ -38,8 +38,8 @@ thead th { background: var(--shade); }
 .doubtful { color: var(--doubtful); font-weight: 600; white-space: nowrap; }
 .bad { color: var(--bad); font-weight: 600; white-space: nowrap; }
 figure { margin: 1rem 0; }
-figure svg { display: block; max-width: 100%; height: auto; background: #ffffff;
-  border: 1px solid var(--line); }
+figure svg { display: block; box-sizing: border-box; max-width: 100%; height: auto;
+  background: #ffffff; border: 1px solid var(--line); }
 figcaption { font-size: .87rem; color: var(--faint); max-width: 48rem; margin-top: .3rem; }
 @page { size: A4; margin: 16mm 14mm; }
 @media print { html { font-size: 10.5px; }
@@ -86,6 +86,7 @@ std::string rowOf(const std::vector<HtmlCell>& cells) {
 
 void HtmlTable::add(const std::vector<std::string>& words) {
     std::vector<HtmlCell> row;
+    row.reserve(words.size());
     for (const std::string& one : words) row.push_back({one});
     rows.push_back(std::move(row));
 }

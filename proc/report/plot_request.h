@@ -13,7 +13,9 @@ struct PlotRequest {
     std::string title;
     std::vector<Radians> incidences;   ///< light at phi = 0
     std::string quantity = "f, 1/sr";  ///< what a hemisphere map shows, over its scale
-    int shades = 64;                   ///< colours that a hemisphere map tells apart, 2 to 64
+    /// A hemisphere map's pixels as a picture within: smaller where there is noise, and printed as
+    /// they are. Else as runs of one colour, which every program that draws can take apart.
+    bool embedded = false;
 };
 
 /// The bands that differ: all three, or one of what is monochrome.

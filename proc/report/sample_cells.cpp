@@ -18,6 +18,7 @@ std::vector<Band> measuredBands(const SampleSet& sample) {
 
 std::vector<Radians> incidencesOf(const SampleSet& sample) {
     std::vector<Radians> incidences;
+    incidences.reserve(sample.leds.size());
     for (const LedTable& led : sample.leds) incidences.push_back(led.incidence);
     return incidences;
 }

@@ -27,20 +27,6 @@ struct Reported {
     [[nodiscard]] bool measured() const { return !measuredBands(sample()).empty(); }
 };
 
-constexpr int kShadesOfU = 24;  // a u is known to a tenth: so are its colours
-constexpr int kFewestShades = 8;
-constexpr std::size_t kMostMapBytes = 500'000;
-
-/// In fewer colours where noise would make the picture too large to send about.
-std::string mapOf(const Scatterer& surface, PlotRequest request) {
-    std::string map = hemisphereMaps(surface, request);
-    while (map.size() > kMostMapBytes && request.shades > kFewestShades) {
-        request.shades /= 2;
-        map = hemisphereMaps(surface, request);
-    }
-    return map;
-}
-
 void addIdentity(HtmlPage& page, const Reported& what) {
     page.section("identity", "Identity");
     page.facts(identityFacts(what.sample(), what.origin));
@@ -105,15 +91,17 @@ void addMaps(HtmlPage& page, const Reported& what) {
         page.paragraph("No band of any LED was measured: there is nothing to draw.");
         return;
     }
-    page.figure(mapOf(what.lookup, {.title = "f as measured", .incidences = incidences}),
-                "The reflected hemisphere from above, theta_o outward in equal steps to 90 "
-                "degrees; the light stands on the right (azimuth 0). f in 1/sr on one logarithmic "
-                "scale; grey is missing, which is never 0.");
-    page.figure(mapOf(RelativeUncertainty(what.lookup),
-                      {.title = "relative uncertainty",
-                       .incidences = incidences,
-                       .quantity = "u / f, k = 1",
-                       .shades = kShadesOfU}),
+    page.figure(
+        hemisphereMaps(what.lookup,
+                       {.title = "f as measured", .incidences = incidences, .embedded = true}),
+        "The reflected hemisphere from above, theta_o outward in equal steps to 90 "
+        "degrees; the light stands on the right (azimuth 0). f in 1/sr on one logarithmic "
+        "scale; grey is missing, which is never 0.");
+    page.figure(hemisphereMaps(RelativeUncertainty(what.lookup),
+                               {.title = "relative uncertainty",
+                                .incidences = incidences,
+                                .quantity = "u / f, k = 1",
+                                .embedded = true}),
                 "Combined standard uncertainty (k = 1) over f, likewise.");
     page.section("slices", "Plane of incidence");
     page.figure(slicePlots(what.lookup, {.title = "f as measured", .incidences = incidences}),

@@ -61,6 +61,12 @@ void Svg::runs(std::string_view pathData, std::string_view colour) {
              attribute("shape-rendering", "crispEdges") + "/>\n";
 }
 
+void Svg::image(Point corner, Point size, std::string_view uri) {
+    body_ += "<image" + attribute("x", number(corner.x)) + attribute("y", number(corner.y)) +
+             attribute("width", number(size.x)) + attribute("height", number(size.y)) +
+             attribute("style", "image-rendering:pixelated") + attribute("href", uri) + "/>\n";
+}
+
 void Svg::text(Point at, std::string_view words, Anchor anchor, double size) {
     const std::string_view where = anchor == Anchor::Start    ? "start"
                                    : anchor == Anchor::Middle ? "middle"

@@ -38,6 +38,8 @@ public:
     /// Ready-made path data, stroked one unit wide without smoothing, so that neighbours leave no
     /// seam: runs of raster pixels.
     void runs(std::string_view pathData, std::string_view colour);
+    /// Ready-made data of a picture, each of whose pixels stays a rectangle.
+    void image(Point corner, Point size, std::string_view uri);
     void text(Point at, std::string_view words, Anchor anchor = Anchor::Start, double size = 11);
     /// Large, and cut with dots where it would leave the picture.
     void title(Point at, std::string_view words);

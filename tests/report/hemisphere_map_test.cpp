@@ -9,6 +9,7 @@
 #include <set>
 
 #include "proc/report/colour_ramp.h"
+#include "tests/report/decoded_png.h"
 #include "tests/report/pictures.h"
 
 namespace gonio::proc {
@@ -16,6 +17,7 @@ namespace {
 
 using test::Answering;
 using test::readPicture;
+using test::readXml;
 using test::same;
 using test::Xml;
 using test::XmlElement;
@@ -209,15 +211,38 @@ TEST(HemisphereMap, LightBelowTheHorizonHasNoRing) {
     for (const XmlElement& circle : xml.all("circle")) EXPECT_NE(circle.at("stroke"), "#d35400");
 }
 
-TEST(HemisphereMap, TellsAsManyColoursApartAsItIsAskedTo) {
-    const Answering wide(
-        [](const LightView& pair) { return same(std::exp(2 * pair.out.x() - 1)); });
-    for (int shades : {2, 16, 64}) {
-        const Xml xml = readPicture(
-            hemisphereMaps(wide, {.title = "a sample", .incidences = {0_deg}, .shades = shades}));
-        EXPECT_LE(coloursOf(xml).size(), static_cast<std::size_t>(shades));
-        EXPECT_GE(coloursOf(xml).size(), static_cast<std::size_t>(shades) / 3);
+/// Colours of the pixels of each panel, as runs or as a picture within; of none: "".
+std::map<std::pair<double, double>, std::string> pixelsOf(const Xml& xml) {
+    std::map<std::pair<double, double>, std::string> pixels;
+    for (const Streak& run : runsOf(xml)) {
+        for (double x = run.x; x < run.x + run.length; ++x) pixels[{x, run.y - 0.5}] = run.colour;
     }
+    for (const XmlElement& image : xml.all("image")) {
+        const test::Decoded png = test::decodedUri(image.at("href"));
+        EXPECT_EQ(png.width, image.number("width"));
+        for (std::size_t i = 0; i < png.colours.size(); ++i) {
+            if (png.colours[i].empty()) continue;
+            const std::size_t across = static_cast<std::size_t>(png.width);
+            pixels[{image.number("x") + static_cast<double>(i % across),
+                    image.number("y") + static_cast<double>(i / across)}] = png.colours[i];
+        }
+    }
+    return pixels;
+}
+
+TEST(HemisphereMap, ThePictureWithinShowsWhatTheRunsShow) {
+    const Answering waves([](const LightView& pair) {
+        if (std::abs(pair.out.y()) < 0.2) return test::nothing();
+        return same(std::exp(5 * std::sin(20 * pair.out.x())));
+    });
+    const PlotRequest runs{.title = "a sample", .incidences = {0_deg, 40_deg}};
+    PlotRequest picture = runs;
+    picture.embedded = true;
+    const Xml within = readXml(hemisphereMaps(waves, picture));
+    EXPECT_EQ(within.fault, "");
+    EXPECT_EQ(within.all("image").size(), 6U);
+    EXPECT_TRUE(within.all("path").empty());
+    EXPECT_EQ(pixelsOf(within), pixelsOf(readXml(hemisphereMaps(waves, runs))));
 }
 
 TEST(HemisphereMap, HoldsTheSmallestAndTheLargestNumbers) {

@@ -173,6 +173,13 @@ TEST(SampleReport, OfOneLedOneBandOrOneCellIsWhole) {
     cells.flags[0] = kept.flags;
     const Xml cell = readHtml(reportOf(one));
     EXPECT_EQ(rowOf(cell, "20 deg, G 525 nm").at(0), "< 0.1 %");
+    const auto estimator = SampleEstimator::over(one, {});
+    ASSERT_TRUE(estimator) << estimator.error().message;
+    const Selection fits = selectModel(*familiesNamed("lambert,lambert+ggx"), fitDataOf(one));
+    const Xml made = readHtml(sampleReport(
+        one, origin(), {.estimator = estimator->get(), .noEstimator = {}, .fits = &fits}));
+    EXPECT_NE(wordsOf(made).find("Too few incidences"), std::string::npos);
+    EXPECT_EQ(rowOf(made, "lambert").at(0), "too few data");
 
     one.leds.clear();
     EXPECT_NE(wordsOf(readHtml(reportOf(one))).find("nothing to draw"), std::string::npos);
