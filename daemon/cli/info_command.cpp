@@ -158,7 +158,12 @@ Result<Estimated> asItIs(Result<Material> material) {
     return Estimated{std::move(scatterer), std::move(*material)};
 }
 
-Result<Json> infoOf(const CommonOptions& common, const InfoOptions& options) {
+struct Info {
+    Json file;
+    std::optional<EstimatorFacts> estimator;  ///< where one was asked for
+};
+
+Result<Info> infoOf(const CommonOptions& common, const InfoOptions& options) {
     const std::string& file = options.file;
     if (std::filesystem::path(file).extension() == ".graw") {
         if (options.estimator != "none") {
@@ -167,7 +172,7 @@ Result<Json> infoOf(const CommonOptions& common, const InfoOptions& options) {
         }
         const Result<proc::RawCapture> capture = proc::readGraw(file);
         if (!capture) return capture.error();
-        return rawJson(*capture);
+        return Info{rawJson(*capture), {}};
     }
     const bool estimates = options.estimator != "none";
     if (estimates && std::filesystem::path(file).extension() == ".csv") {
@@ -184,22 +189,24 @@ Result<Json> infoOf(const CommonOptions& common, const InfoOptions& options) {
     json["bands"] = material.scatterer->bandCount() == BandCount::One ? 1 : 3;
     if (material.sample != nullptr) json.update(sampleJson(*material.sample));
     if (material.table != nullptr) json.update(tableJson(*material.table));
-    if (estimates) json["estimator"] = estimatorFacts(*opened, options.estimator);
-    return json;
+    Info info{std::move(json), {}};
+    if (estimates) info.estimator = estimatorFacts(*opened, options.estimator);
+    return info;
 }
 
 }  // namespace
 
 Result<void> info(const CommonOptions& common, const InfoOptions& options) {
-    const Result<Json> facts = infoOf(common, options);
-    if (!facts) return facts.error();
+    const Result<Info> found = infoOf(common, options);
+    if (!found) return found.error();
     if (common.json) {
         Json json = {{"schema", "gonio/info/1"}, {"file", options.file}};
-        json.update(*facts);
+        json.update(found->file);
+        if (found->estimator) json["estimator"] = toJson(*found->estimator);
         printJson(json);
     } else {
         std::cout << "file: " << options.file << "\n";
-        Json plain = withReadableVerdicts(*facts);
+        Json plain = withReadableVerdicts(found->file);
         const std::string budget = budgetTable(plain.value("budget", Json::array()));
         if (!budget.empty()) plain.erase("budget");
         printPlain(plain, "");
@@ -207,6 +214,7 @@ Result<void> info(const CommonOptions& common, const InfoOptions& options) {
             std::cout << "budget, standard uncertainties, medians over cells and states:\n"
                       << budget;
         }
+        if (found->estimator) print(*found->estimator);
     }
     return {};
 }

@@ -85,7 +85,7 @@ Rows costRows(const std::vector<InterpolationRow>& rows) {
         double ask = 0;
         double count = 0;
         for (const InterpolationRow& row : rows) {
-            if (row.method != method) continue;
+            if (row.method != method || std::isnan(row.microseconds)) continue;
             make += row.makeSeconds;
             ask += row.microseconds;
             ++count;
@@ -104,7 +104,7 @@ Json toJson(const InterpolationRow& row) {
               {"in_family", row.inFamily},
               {"in_library", row.inLibrary},
               {"make_s", row.makeSeconds},
-              {"answer_us", row.microseconds}};
+              {"answer_us", number(row.microseconds)}};
     if (!row.chosen.empty()) json["chosen"] = row.chosen;
     for (std::size_t r = 0; r < row.errors.size(); ++r) {
         const auto& error = row.errors[r];

@@ -31,6 +31,8 @@ Json toJson(const proc::LookupRow& row) {
             {"scalar_ns", number(row.scalarNs)},
             {"batch_ns", number(row.batchNs)},
             {"draw_ns", number(row.drawNs)},
+            {"draw_variance", number(row.draws)},
+            {"draw_variance_by_cosine", number(row.drawsByCosine)},
             {"on_front", row.onFront},
             {"knee", row.knee}};
 }

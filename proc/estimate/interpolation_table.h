@@ -28,7 +28,8 @@ struct InterpolationRow {
     std::string chosen;               ///< what `auto` took between and beyond; empty for the others
     std::vector<RegionError> errors;  ///< by region
     double makeSeconds = 0;           ///< from the sample to the first answer
-    double microseconds = 0;          ///< wall, per answer of the first region alone, on all cores
+    /// Wall, per answer of the first region alone, on all cores; NaN where the method was refused.
+    double microseconds = std::numeric_limits<double>::quiet_NaN();
 };
 
 struct InterpolationOptions {

@@ -194,6 +194,10 @@ protected:
 TEST_F(ProgramDocuments, OfInfoConformForEveryKindOfFile) {
     expectConforms({"info", "model:lambert,albedo=0.5"});
     expectConforms({"info", kRealFile});
+    const Json asked =
+        expectConforms({"info", kRealFile, "--estimator", "specular-log"})["estimator"];
+    EXPECT_EQ(asked["between"], "specular-log");
+    EXPECT_EQ(asked["candidates"].size(), 1U);
     expectConforms({"info", sampleFile("")});
     expectConforms({"info", sampleFile("model:lambert,albedo=0.5")});
     const auto raw = proc::encodeGraw(test::smallCapture());

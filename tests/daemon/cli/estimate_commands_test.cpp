@@ -177,6 +177,8 @@ TEST(TradeLookup, TellsErrorsBytesAndTimes) {
     const Json rows =
         documentOf(gonio, {"trade", "lookup", "--quick", "-o", folder.string()})["rows"];
     EXPECT_GT(rows.size(), 6U);
+    EXPECT_LT(rows[0]["draw_variance"].get<double>(),
+              rows[0]["draw_variance_by_cosine"].get<double>());
     EXPECT_GT(test::textOf(folder / "trade-lookup.md").size(), 500U);
     const std::string picture = test::textOf(folder / "trade-lookup.svg");
     EXPECT_EQ(picture.find("<svg"), 0U);
