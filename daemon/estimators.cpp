@@ -108,9 +108,10 @@ Result<void> checkName(const std::string& name) {
     const bool one = std::find(known.begin(), known.end(), name) != known.end();
     if (one || proc::seed004Named(name)) return {};
     std::string list;
-    for (const std::string& method : known) list += method + ", ";
+    for (const std::string& method : known) list += (list.empty() ? "" : ", ") + method;
     return Error{ErrorKind::Usage,
-                 "--estimator '" + name + "' is not known; known: " + list + proc::seed004Names()};
+                 "--estimator '" + name + "' is not known; known: " + list + "; and " +
+                     proc::seed004Names()};
 }
 
 }  // namespace

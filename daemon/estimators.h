@@ -31,7 +31,7 @@ struct Estimated {
     Material material;  ///< the file's own; empty kind for scattered values
     /// Of the scatterer, where it chooses; else null.
     const proc::SampleEstimator* sample = nullptr;
-    std::vector<Radians> scattered;  ///< incidences of scattered values, at most 12
+    std::vector<Radians> scattered{};  ///< incidences of scattered values, at most 12
 
     /// That the file knows: the LEDs' where it is a formula.
     [[nodiscard]] std::vector<Radians> incidences() const {
