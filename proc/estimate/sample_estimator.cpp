@@ -12,7 +12,6 @@ namespace gonio::proc {
 namespace {
 
 constexpr std::size_t kPriorMaterials = 2000;
-constexpr std::size_t kPriorFunctions = 200;
 
 Flags correctionsOf(const SampleSet& set) {
     Flags any;
@@ -114,7 +113,7 @@ double smooth(double x) { return x * x * (3 - 2 * x); }
 
 std::shared_ptr<const PriorBasis> standardPrior() {
     static const std::shared_ptr<const PriorBasis> basis = [] {
-        auto made = PriorBasis::over(PriorLibrary::standard(kPriorMaterials), kPriorFunctions);
+        auto made = PriorBasis::over(PriorLibrary::standard(kPriorMaterials));
         return made ? std::make_shared<const PriorBasis>(std::move(*made)) : nullptr;
     }();
     return basis;

@@ -114,7 +114,7 @@ TEST_F(StoredSample, WithItsOwnCalibrationIsTheSame) {
 TEST_F(StoredSample, DrawsAreKeptWithItAndMakeItsUncertaintiesAgain) {
     const Desk desk{.store = *store, .profile = profile, .utcNow = [] { return "t"; }};
     const auto drawn =
-        recalibrate(desk, {.kind = JobKind::Recalibrate, .name = "tile", .monteCarlo = 200});
+        recalibrate(desk, {.kind = JobKind::Recalibrate, .name = "tile", .monteCarlo = 100});
     ASSERT_TRUE(drawn) << drawn.error().message;
     EXPECT_FALSE(Json::parse(*drawn)["identical"]);
     const auto same = again();
