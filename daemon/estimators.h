@@ -6,7 +6,8 @@
 //   none        the look-up alone: no answer beyond the angles of the file
 //   shepard, axis-linear, grid-linear   the thesis's (proc/estimate/seed004.h)
 //   and the names of methodNames(), one method of auto's without the choice.
-// All but none take a sample as isotropic: one of several rotations is looked up by auto, too.
+// They take a sample as isotropic. Of one of several rotations auto and its methods estimate each
+// rotation by itself (rotation_estimator.h); the thesis's are refused.
 
 #include <filesystem>
 #include <memory>
