@@ -136,8 +136,9 @@ TEST(Merging, ScatteredBandsMeetAtTheirPairs) {
     const std::string head = "theta_i,phi_i,theta_o,phi_o,f\n";
     ASSERT_TRUE(
         proc::writeFile(folder / "paint_R.csv", head + "20,0,30,180,0.5\n20,0,32,180,-0.25\n"));
-    ASSERT_TRUE(
-        proc::writeFile(folder / "paint_G.csv", head + "20,0,30,180,0.75\n20,0,60,10,0.125\n"));
+    ASSERT_TRUE(proc::writeFile(folder / "paint_G.csv",
+                                "theta_i,phi_i,theta_o,phi_o,f,flags\n"
+                                "20,0,30,180,0.75,1\n20,0,60,10,0.125,5\n20,0,32,180,9,3\n"));
     ASSERT_TRUE(
         proc::writeFile(folder / "paint-Blue.csv", head + "20,0,30,180,1\n20,0,32,180,2\n"));
     const auto inputs = readMergeInputs({(folder / "paint_G.csv").string(),
@@ -147,12 +148,12 @@ TEST(Merging, ScatteredBandsMeetAtTheirPairs) {
     ASSERT_TRUE(inputs) << inputs.error().message;
     const Result<Merged> done = merged(*inputs, {});
     ASSERT_TRUE(done) << done.error().message;
-    // 32 degrees: green is estimated from 30; 60 degrees: only green was there.
+    // 32 degrees: green was saturated, and is estimated from 30; 60 degrees: only green was there.
     EXPECT_EQ(channelCsv(done->rows),
               "theta_i,phi_i,theta_o,phi_o,f_r,f_g,f_b,flags_r,flags_g,flags_b\n"
               "20,0,30,180,0.5,0.75,1,1,1,1\n"
               "20,0,32,180,-0.25,0.75,2,1,64,1\n"
-              "20,0,60,10,,0.125,,0,1,0\n");
+              "20,0,60,10,,0.125,,0,5,0\n");
     ASSERT_TRUE(proc::writeFile(folder / "paint.csv", head + "20,0,30,180,0.5\n"));
     const auto unnamed = readMergeInputs({(folder / "paint.csv").string()}, {});
     ASSERT_FALSE(unnamed);
