@@ -87,6 +87,19 @@ TEST(Merging, WorksOutFromTheRotationsWhatIsAsked) {
     EXPECT_LT(u, 0.45 * whole.sample->leds[1].bands[0].uRandom[5000]);  // 4 rotations, 2 sides
 }
 
+/// After an average all agree: what was found before it is what the sample is judged by.
+TEST(Merging, WarnsOfWhatWasAveragedThoughItWasNotAlike) {
+    MergeInput skew = input("b", 90);
+    for (proc::CellSamples& cells : skew.sample->leds[0].bands) {
+        for (std::size_t i = 0; i < cells.size(); ++i)
+            cells.f[i] *= 1 + 0.6 * proc::CellGrid::centre(i).y();
+    }
+    const Result<Merged> done = merged({input("a", 0), skew}, {.plane = true, .isotropic = true});
+    ASSERT_TRUE(done) << done.error().message;
+    EXPECT_EQ(gradeOf(*done, "isotropy"), proc::Grade::Warned);
+    EXPECT_EQ(gradeOf(*done, "plane symmetry"), proc::Grade::Warned);
+}
+
 TEST(Merging, RefusesWhatContradictsAndSaysWhatResolvesIt) {
     expectRefused({input("a", 0)}, {}, {"'a'", "one sample", "--plane"});
     expectRefused({input("a", 0), input("b", 0)}, {.isotropic = true}, {"--rotation"});
