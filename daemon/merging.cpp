@@ -93,6 +93,7 @@ public:
         if (Result<void> good = checkAsked(turns); !good) return good.error();
         noteCalibrations();
         std::vector<proc::SampleSet> parts;
+        parts.reserve(turns.size());
         for (Turn& turn : turns) parts.push_back(averaged(turn));
         merged_.how = howOf(turns);
         join(parts);
@@ -177,6 +178,7 @@ private:
 
     void join(const std::vector<proc::SampleSet>& parts) {
         std::vector<proc::SampleInfo> infos;
+        infos.reserve(inputs_.size());
         for (const MergeInput& input : inputs_) infos.push_back(input.sample->info);
         proc::SampleSet& set = merged_.sample;
         set.info = inputs_.size() == 1 ? infos.front() : proc::mergedInfo(infos, merged_.how);
@@ -189,6 +191,7 @@ private:
     void overRotations(const std::vector<proc::SampleSet>& parts) {
         proc::Averaged result = proc::averageOf(parts);
         std::vector<std::string> files;
+        files.reserve(parts.size());
         for (const proc::SampleSet& part : parts)
             files.push_back("rotation " + degrees(part.leds.front().rotation));
         merged_.checks.push_back({"isotropy", {}, result.cells, result.scales});
@@ -215,7 +218,7 @@ private:
         merged_.sample = std::move(result.set);
         merged_.checks.push_back({"reciprocity", {}, result.consistency, {}});
         if (result.pairs == 0) {
-            merged_.notes.push_back("--reciprocal: no two LEDs saw each other's direction");
+            merged_.notes.emplace_back("--reciprocal: no two LEDs saw each other's direction");
         }
         note("reciprocal");
     }
