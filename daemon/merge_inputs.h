@@ -20,10 +20,12 @@ struct MergeInput {
     std::optional<Band> band{};  ///< the only one, where there is only one
 };
 
-/// Reads them. A file that holds the same values as one before it counts once, with a warning in
-/// the log. A File error for a file that is none; a Usage error for a model, for a file of three
-/// bands that is no sample, and where the band of a file is not known: that is what its comment
-/// `Wavelength (nm) = ...` says, else a word R, G, B, red, green or blue of its name.
+/// Reads them; of a CSV the column f, where there u_random (or u), u_systematic and flags, without
+/// the rows that are saturated, blocked or below the horizon. A file that holds the same values as
+/// one before it counts once, with a warning in the log. A File error for a file that is none; a
+/// Usage error for a model, for a file of three bands that is no sample, and where the band of a
+/// file is not known: that is what its comment `Wavelength (nm) = ...` says, else a word R, G, B,
+/// red, green or blue of its name.
 [[nodiscard]] Result<std::vector<MergeInput>> readMergeInputs(const std::vector<std::string>& files,
                                                               const std::filesystem::path& store);
 

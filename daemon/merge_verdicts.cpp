@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "daemon/sample_quality.h"
-#include "proc/quality/symmetry.h"
 #include "proc/quality/verdict.h"
 
 namespace gonio::daemon {
@@ -34,7 +33,7 @@ void putWorse(std::vector<proc::Verdict>& all, proc::Verdict verdict) {
 
 void judge(Merged& merged,
            std::span<const MergeInput> inputs,
-           std::span<const proc::Averaged> repeats,
+           std::span<const proc::Verdict> found,
            const proc::QualityLimits& limits) {
     std::vector<proc::Verdict> all;
     for (const MergeInput& input : inputs) {
@@ -43,12 +42,21 @@ void judge(Merged& merged,
             putWorse(all, std::move(one));
         }
     }
-    for (const proc::Averaged& one : repeats) {
-        proc::Verdict verdict = proc::repeatsVerdict(one, limits);
-        putWorse(all, std::move(verdict));
-    }
     merged.sample.info.qcVerdicts = proc::verdictsText(all);
     judgeTable(merged.sample, limits);
+    all = proc::readVerdicts(merged.sample.info.qcVerdicts);
+    for (const proc::Verdict& one : found) {
+        const auto first =
+            std::find_if(found.begin(), found.end(), [&](const proc::Verdict& other) {
+                return other.name == one.name;
+            });
+        if (&*first == &one) {
+            proc::put(all, one);
+        } else {
+            putWorse(all, one);
+        }
+    }
+    merged.sample.info.qcVerdicts = proc::verdictsText(all);
 }
 
 }  // namespace gonio::daemon

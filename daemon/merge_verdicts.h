@@ -5,13 +5,15 @@
 #include <span>
 
 #include "daemon/merging.h"
+#include "proc/quality/verdict.h"
 
 namespace gonio::daemon {
 
-/// `repeats`: the averages of each rotation that was measured more than once.
+/// `found`: verdicts on what was averaged, of before: afterwards all agree. The first of a name
+/// counts where it is worse.
 void judge(Merged& merged,
            std::span<const MergeInput> inputs,
-           std::span<const proc::Averaged> repeats,
+           std::span<const proc::Verdict> found,
            const proc::QualityLimits& limits);
 
 }  // namespace gonio::daemon

@@ -7,6 +7,8 @@
 #include "daemon/merge_verdicts.h"
 #include "proc/core/number_text.h"
 #include "proc/formats/file_degrees.h"
+#include "proc/quality/reciprocity.h"
+#include "proc/quality/symmetry.h"
 #include "proc/table/achieved.h"
 #include "proc/table/merged_info.h"
 #include "proc/table/plane_symmetry.h"
@@ -91,6 +93,7 @@ public:
         if (Result<void> good = checkAsked(turns); !good) return good.error();
         noteCalibrations();
         std::vector<proc::SampleSet> parts;
+        parts.reserve(turns.size());
         for (Turn& turn : turns) parts.push_back(averaged(turn));
         merged_.how = howOf(turns);
         join(parts);
@@ -99,7 +102,7 @@ public:
         if (options_.reciprocal) overReciprocals();
         if (!averages_.empty()) merged_.sample.info.extra["averaged"] = averages_;
         merged_.sample.info.achievedUncertainty = proc::achievedUncertainty(merged_.sample);
-        judge(merged_, inputs_, repeats_, options_.limits);
+        judge(merged_, inputs_, found_, options_.limits);
         std::stable_sort(merged_.outliers.begin(),
                          merged_.outliers.end(),
                          [](const FileOutlier& a, const FileOutlier& b) {
@@ -169,14 +172,13 @@ private:
         result.set.info.budgetJson = proc::averagedBudget(sets, std::sqrt(result.weightSquares));
         merged_.checks.push_back({"repeats", turn.rotation, result.cells, result.scales});
         report(result, turn.rotation, files);
-        proc::SampleSet set = std::move(result.set);
-        result.set = {};
-        repeats_.push_back(std::move(result));
-        return set;
+        found_.push_back(proc::repeatsVerdict(result, options_.limits));
+        return std::move(result.set);
     }
 
     void join(const std::vector<proc::SampleSet>& parts) {
         std::vector<proc::SampleInfo> infos;
+        infos.reserve(inputs_.size());
         for (const MergeInput& input : inputs_) infos.push_back(input.sample->info);
         proc::SampleSet& set = merged_.sample;
         set.info = inputs_.size() == 1 ? infos.front() : proc::mergedInfo(infos, merged_.how);
@@ -189,9 +191,11 @@ private:
     void overRotations(const std::vector<proc::SampleSet>& parts) {
         proc::Averaged result = proc::averageOf(parts);
         std::vector<std::string> files;
+        files.reserve(parts.size());
         for (const proc::SampleSet& part : parts)
             files.push_back("rotation " + degrees(part.leds.front().rotation));
         merged_.checks.push_back({"isotropy", {}, result.cells, result.scales});
+        found_.push_back(proc::isotropyVerdict(result, options_.limits));
         report(result, Radians(), files);
         merged_.sample.leds = std::move(result.set.leds);
         proc::turnTo(merged_.sample, Radians());
@@ -201,6 +205,7 @@ private:
     }
 
     void overPlane() {
+        found_.push_back(proc::planeVerdict(merged_.sample, options_.limits));
         proc::Symmetrical result = proc::planeSymmetrical(std::move(merged_.sample));
         merged_.sample = std::move(result.set);
         merged_.checks.push_back({"plane", {}, result.consistency, {}});
@@ -208,11 +213,12 @@ private:
     }
 
     void overReciprocals() {
+        found_.push_back(proc::reciprocityVerdict(merged_.sample, options_.limits));
         proc::Reciprocal result = proc::reciprocalAverage(std::move(merged_.sample));
         merged_.sample = std::move(result.set);
         merged_.checks.push_back({"reciprocity", {}, result.consistency, {}});
         if (result.pairs == 0) {
-            merged_.notes.push_back("--reciprocal: no two LEDs saw each other's direction");
+            merged_.notes.emplace_back("--reciprocal: no two LEDs saw each other's direction");
         }
         note("reciprocal");
     }
@@ -222,7 +228,7 @@ private:
     const std::vector<MergeInput>& inputs_;
     const MergeOptions& options_;
     std::string averages_;
-    std::vector<proc::Averaged> repeats_;  ///< without their sets
+    std::vector<proc::Verdict> found_;  ///< on what was averaged
     Merged merged_;
 };
 

@@ -138,6 +138,7 @@ Result<std::unique_ptr<const SampleEstimator>> SampleEstimator::over(
                      "estimate: a sample of several rotations is not taken as isotropic; look it "
                      "up, or average its rotations"};
     }
+    set = unturned(std::move(set));
     BrdfData data = fitDataOf(set);
     auto lookup = std::make_shared<const SampleLookup>(std::move(set));  // the estimator's own
     return over(std::move(lookup), std::move(data), std::move(options));

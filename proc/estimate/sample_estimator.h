@@ -54,7 +54,7 @@ public:
     [[nodiscard]] static Result<std::unique_ptr<const SampleEstimator>> over(
         SampleSet set, SampleEstimatorOptions options);
     /// Over anything that answers `measured` at what was measured, shared with its owner, and the
-    /// data that it holds.
+    /// data that it holds, at phi_i = 0.
     [[nodiscard]] static Result<std::unique_ptr<const SampleEstimator>> over(
         std::shared_ptr<const Scatterer> measured, BrdfData data, SampleEstimatorOptions options);
 

@@ -78,6 +78,7 @@ Verdict isotropyVerdict(const SampleSet& sample, const QualityLimits& limits) {
             .name = "isotropy", .figure = {}, .evidence = "measured at one rotation", .next = {}};
     }
     std::vector<SampleSet> rotations;
+    rotations.reserve(all.size());
     for (const Radians rotation : all) rotations.push_back(tablesAt(sample, rotation));
     return isotropyVerdict(averageOf(rotations), limits);
 }

@@ -12,7 +12,8 @@
 
 namespace gonio::proc {
 
-/// `plane symmetry`: of the rotation whose sides differ most; not determined where no cell and its image were measured.
+/// `plane symmetry`: of the rotation whose sides differ most; not determined where no cell and its
+/// image were measured.
 [[nodiscard]] Verdict planeVerdict(const SampleSet& sample, const QualityLimits& limits = {});
 
 /// `isotropy`: of the sample's rotations; not determined of a single one.

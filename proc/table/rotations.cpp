@@ -51,6 +51,11 @@ void turnTo(SampleSet& set, Radians rotation) {
     for (LedTable& led : set.leds) led.rotation = rotation;
 }
 
+SampleSet unturned(SampleSet set) {
+    turnTo(set, Radians());
+    return set;
+}
+
 void sortTables(SampleSet& set) {
     std::stable_sort(set.leds.begin(), set.leds.end(), [](const LedTable& a, const LedTable& b) {
         return a.rotation == b.rotation ? a.incidence < b.incidence : a.rotation < b.rotation;

@@ -28,6 +28,8 @@ namespace gonio::proc {
 
 /// Gives all tables of a set this rotation.
 void turnTo(SampleSet& set, Radians rotation);
+/// The set in the rig's frame: as an isotropic sample, which does not feel how it lies.
+[[nodiscard]] SampleSet unturned(SampleSet set);
 
 /// Tables by ascending rotation, then incidence.
 void sortTables(SampleSet& set);

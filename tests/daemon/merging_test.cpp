@@ -87,6 +87,19 @@ TEST(Merging, WorksOutFromTheRotationsWhatIsAsked) {
     EXPECT_LT(u, 0.45 * whole.sample->leds[1].bands[0].uRandom[5000]);  // 4 rotations, 2 sides
 }
 
+/// After an average all agree: what was found before it is what the sample is judged by.
+TEST(Merging, WarnsOfWhatWasAveragedThoughItWasNotAlike) {
+    MergeInput skew = input("b", 90);
+    for (proc::CellSamples& cells : skew.sample->leds[0].bands) {
+        for (std::size_t i = 0; i < cells.size(); ++i)
+            cells.f[i] *= 1 + 0.6 * proc::CellGrid::centre(i).y();
+    }
+    const Result<Merged> done = merged({input("a", 0), skew}, {.plane = true, .isotropic = true});
+    ASSERT_TRUE(done) << done.error().message;
+    EXPECT_EQ(gradeOf(*done, "isotropy"), proc::Grade::Warned);
+    EXPECT_EQ(gradeOf(*done, "plane symmetry"), proc::Grade::Warned);
+}
+
 TEST(Merging, RefusesWhatContradictsAndSaysWhatResolvesIt) {
     expectRefused({input("a", 0)}, {}, {"'a'", "one sample", "--plane"});
     expectRefused({input("a", 0), input("b", 0)}, {.isotropic = true}, {"--rotation"});
@@ -136,8 +149,9 @@ TEST(Merging, ScatteredBandsMeetAtTheirPairs) {
     const std::string head = "theta_i,phi_i,theta_o,phi_o,f\n";
     ASSERT_TRUE(
         proc::writeFile(folder / "paint_R.csv", head + "20,0,30,180,0.5\n20,0,32,180,-0.25\n"));
-    ASSERT_TRUE(
-        proc::writeFile(folder / "paint_G.csv", head + "20,0,30,180,0.75\n20,0,60,10,0.125\n"));
+    ASSERT_TRUE(proc::writeFile(folder / "paint_G.csv",
+                                "theta_i,phi_i,theta_o,phi_o,f,flags\n"
+                                "20,0,30,180,0.75,1\n20,0,60,10,0.125,5\n20,0,32,180,9,3\n"));
     ASSERT_TRUE(
         proc::writeFile(folder / "paint-Blue.csv", head + "20,0,30,180,1\n20,0,32,180,2\n"));
     const auto inputs = readMergeInputs({(folder / "paint_G.csv").string(),
@@ -147,12 +161,12 @@ TEST(Merging, ScatteredBandsMeetAtTheirPairs) {
     ASSERT_TRUE(inputs) << inputs.error().message;
     const Result<Merged> done = merged(*inputs, {});
     ASSERT_TRUE(done) << done.error().message;
-    // 32 degrees: green is estimated from 30; 60 degrees: only green was there.
+    // 32 degrees: green was saturated, and is estimated from 30; 60 degrees: only green was there.
     EXPECT_EQ(channelCsv(done->rows),
               "theta_i,phi_i,theta_o,phi_o,f_r,f_g,f_b,flags_r,flags_g,flags_b\n"
               "20,0,30,180,0.5,0.75,1,1,1,1\n"
               "20,0,32,180,-0.25,0.75,2,1,64,1\n"
-              "20,0,60,10,,0.125,,0,1,0\n");
+              "20,0,60,10,,0.125,,0,5,0\n");
     ASSERT_TRUE(proc::writeFile(folder / "paint.csv", head + "20,0,30,180,0.5\n"));
     const auto unnamed = readMergeInputs({(folder / "paint.csv").string()}, {});
     ASSERT_FALSE(unnamed);

@@ -8,6 +8,7 @@
 #include "proc/estimate/interpolation_study.h"
 #include "proc/models/spec.h"
 #include "proc/optics/cell_grid.h"
+#include "proc/table/rotations.h"
 #include "tests/support/sample_sets.h"
 
 namespace gonio::proc {
@@ -52,6 +53,21 @@ TEST(SampleEstimator, AnswersAMeasuredCellAsItWasMeasured) {
         EXPECT_EQ(answer.source, Source::Measured);
         EXPECT_EQ(answer.f[Band::G], set.leds[2].bands[1].f[cell]);
     }
+}
+
+/// An isotropic sample does not feel how it lies; one of several rotations is refused.
+TEST(SampleEstimator, TakesATurnedSampleAsIfItWereNot) {
+    SampleSet set = plasticSample();
+    const SampleEstimatorOptions options{.method = "carried:lambert+ggx", .effort = Effort::Draft};
+    turnTo(set, 45_deg);
+    const auto turned = estimator(set, options);
+    for (const LightView& pair : {pairOf(30, 50, 140), pairOf(70, 60, 180)}) {
+        EXPECT_EQ(turned->answer(pair).f[Band::G], ofPlastic().answer(pair).f[Band::G]);
+    }
+    set.leds.front().rotation = Radians();
+    const auto refused = SampleEstimator::over(set, options);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().kind, ErrorKind::Usage);
 }
 
 TEST(SampleEstimator, AnswersEverywhereAboveTheHorizonWithAnUncertainty) {
