@@ -5,21 +5,12 @@
 
 #include "proc/estimate/grid_data.h"
 #include "proc/estimate/method_choice.h"
-<<<<<<< HEAD
 #include "proc/estimate/rotations_estimator.h"
-=======
-#include "proc/estimate/rotation_estimator.h"
->>>>>>> e447dff08c9b89bf5f2b69dc6cd142ba6a2ff135
 #include "proc/estimate/scattered_estimator.h"
 #include "proc/estimate/seed004.h"
 #include "proc/formats/points_csv.h"
 #include "proc/table/merged_info.h"
 #include "proc/table/rotations.h"
-<<<<<<< HEAD
-=======
-#include "proc/table/sample_lookup.h"
-#include "proc/table/scattered_of.h"
->>>>>>> e447dff08c9b89bf5f2b69dc6cd142ba6a2ff135
 
 namespace gonio::daemon {
 namespace {
@@ -64,62 +55,11 @@ Result<Estimated> ofRotations(Material material,
     return Estimated{Opened(std::move(*made)), std::move(material)};
 }
 
-/// What an LED measured, between its cells too, before any estimate: the models behind those are
-/// of isotropic surfaces, and a grain that lies askew is none.
-class MeasuredFirst final : public Scatterer {
-public:
-    MeasuredFirst(proc::SampleSet set, std::unique_ptr<const proc::SampleEstimator> estimator)
-        : lookup_(std::move(set)), estimator_(std::move(estimator)) {}
-
-    [[nodiscard]] Answer answer(const LightView& pair) const override {
-        const auto& leds = lookup_.set().leds;
-        const bool atLed = std::any_of(leds.begin(), leds.end(), [&](const proc::LedTable& led) {
-            return proc::sameIncidence(led.incidence, pair.in.theta());
-        });
-        if (!atLed) return estimator_->answer(pair);
-        Answer measured = lookup_.answer(pair);
-        return measured.present() ? measured : estimator_->answer(pair);
-    }
-
-private:
-    proc::SampleLookup lookup_;
-    std::unique_ptr<const proc::SampleEstimator> estimator_;
-};
-
-/// Each rotation by itself.
-Result<Opened> ofRotations(const proc::SampleSet& sample,
-                           const std::vector<Radians>& rotations,
-                           const proc::SampleEstimatorOptions& options) {
-    auto made = proc::RotationEstimator::over(
-        rotations, [&](Radians rotation) -> Result<std::shared_ptr<const Scatterer>> {
-            proc::SampleSet part = proc::tablesAt(sample, rotation);
-            auto one = proc::SampleEstimator::over(part, options);
-            if (!one) return one.error();
-            return std::shared_ptr<const Scatterer>(
-                std::make_shared<MeasuredFirst>(std::move(part), std::move(*one)));
-        });
-    if (!made) return made.error();
-    return Opened(std::move(*made));
-}
-
 Result<Estimated> ofMaterial(Material material, const EstimatorChoice& choice) {
-<<<<<<< HEAD
-=======
-    const auto seed = proc::seedInterpolatorNamed(choice.name);
-    const std::vector<Radians> rotations =
-        material.sample != nullptr ? proc::rotationsOf(*material.sample) : std::vector<Radians>{};
-    if (rotations.size() > 1 && seed) {
-        return Error{ErrorKind::Usage,
-                     "a sample of several rotations, and --estimator " + choice.name +
-                         " takes one as isotropic; use auto or none, or first: gonio merge "
-                         "--isotropic"};
-    }
->>>>>>> e447dff08c9b89bf5f2b69dc6cd142ba6a2ff135
     if (choice.name == "none") {
         Opened lookup = material.scatterer;
         return Estimated{std::move(lookup), std::move(material)};
     }
-<<<<<<< HEAD
     const std::vector<Radians> rotations = rotationsOf(material);
     if (const auto seed = proc::seed004Named(choice.name)) {
         if (rotations.size() > 1) {
@@ -130,10 +70,6 @@ Result<Estimated> ofMaterial(Material material, const EstimatorChoice& choice) {
         }
         auto made = material.sample != nullptr ? proc::makeSeed004(*material.sample, *seed)
                                                : proc::makeSeed004(*material.table, *seed);
-=======
-    if (seed) {
-        auto made = ofTheThesis(*seed, scatteredOf(material));
->>>>>>> e447dff08c9b89bf5f2b69dc6cd142ba6a2ff135
         if (!made) return made.error();
         return Estimated{Opened(std::move(*made)), std::move(material)};
     }
@@ -141,24 +77,11 @@ Result<Estimated> ofMaterial(Material material, const EstimatorChoice& choice) {
     auto prior = priorOf(choice);
     if (!prior) return prior.error();
     options.prior = std::move(*prior);
-<<<<<<< HEAD
     if (rotations.size() > 1) return ofRotations(std::move(material), rotations, options);
     proc::BrdfData data =
         material.sample != nullptr
-            ? proc::fitDataOf(*material.sample)
-            : proc::gridDataOf(*material.scatterer, material.incidences(), kTable);
-=======
-    if (rotations.size() > 1) {
-        auto made = ofRotations(*material.sample, rotations, options);
-        if (!made) return made.error();
-        return Estimated{std::move(*made), std::move(material)};
-    }
-    proc::BrdfData data =
-        material.sample != nullptr
             ? proc::fitDataOf(proc::unturned(*material.sample))
-            : proc::gridDataOf(
-                  *material.scatterer, material.incidences(), {.assumedRelative = kAssumed});
->>>>>>> e447dff08c9b89bf5f2b69dc6cd142ba6a2ff135
+            : proc::gridDataOf(*material.scatterer, material.incidences(), kTable);
     auto made = proc::SampleEstimator::over(material.scatterer, std::move(data), options);
     if (!made) return made.error();
     const proc::SampleEstimator* chosen = made->get();

@@ -6,13 +6,8 @@
 //   shepard, axis-linear, grid-linear   the thesis's (proc/estimate/seed004.h), and beyond the
 //               angles its constant extrapolation, or another one: grid-linear:bezier
 //   and the names of methodNames(), one method of auto's without the choice.
-<<<<<<< HEAD
 // A sample of several rotations has an estimator for each (rotations_estimator.h); the thesis's
 // take it as isotropic, and are refused.
-=======
-// They take a sample as isotropic. Of one of several rotations auto and its methods estimate each
-// rotation by itself (rotation_estimator.h); the thesis's are refused.
->>>>>>> e447dff08c9b89bf5f2b69dc6cd142ba6a2ff135
 
 #include <filesystem>
 #include <memory>

@@ -6,6 +6,7 @@
 #include "proc/estimate/answer_blend.h"
 #include "proc/estimate/grid_data.h"
 #include "proc/table/axis.h"
+#include "proc/table/merged_info.h"
 #include "proc/table/rotations.h"
 
 namespace gonio::proc {
@@ -46,15 +47,16 @@ double turnOf(double degrees) {
     return turn < 0 ? turn + 360 : turn;
 }
 
-/// What lies between two rotations may be as wrong as they differ.
-void widen(Answer& answer, const Answer& low, const Answer& high, double t) {
+void widen(Answer& answer, const LedBands& by) {
     if (!answer.uSystematic) return;
     for (const Band band : kBands) {
-        const double own = 2 * t * (1 - t) * std::abs(high.f[band] - low.f[band]);
-        if (!std::isnan(own))
-            (*answer.uSystematic)[band] = std::hypot((*answer.uSystematic)[band], own);
+        double& u = (*answer.uSystematic)[band];
+        if (!std::isnan(by[band])) u = std::hypot(u, by[band]);
     }
 }
+
+/// The order of the sources is that of trust.
+Source weaker(Source a, Source b) { return std::max({a, b, Source::Interpolated}); }
 
 }  // namespace
 
@@ -66,8 +68,7 @@ Result<std::unique_ptr<const RotationsEstimator>> RotationsEstimator::over(
     const SampleSet& set, const SampleEstimatorOptions& options) {
     std::vector<Turn> turns;
     for (const Radians rotation : rotationsOf(set)) {
-        SampleSet part = atRotation(set, rotation);
-        turnTo(part, Radians());
+        SampleSet part = unturned(tablesAt(set, rotation));
         BrdfData data = fitDataOf(part);
         data.exchanges = false;
         auto made = SampleEstimator::over(
@@ -107,7 +108,24 @@ Answer RotationsEstimator::ofTurn(std::size_t turn, const LightView& pair) const
     return turns_[turn].estimator->answer(at);
 }
 
+LedBands RotationsEstimator::rangeAt(const LightView& pair) const {
+    LedBands least, most;
+    least.value.fill(std::nan(""));
+    most = least;
+    for (std::size_t turn = 0; turn < turns_.size(); ++turn) {
+        const Answer one = ofTurn(turn, pair);
+        for (const Band band : kBands) {
+            least[band] = std::fmin(least[band], one.f[band]);
+            most[band] = std::fmax(most[band], one.f[band]);
+        }
+    }
+    return most + least * -1;
+}
+
 Answer RotationsEstimator::answer(const LightView& pair) const {
+    if (!pair.in.aboveHorizon() || !pair.out.aboveHorizon()) {
+        return Answer::none({Flag::BelowHorizon}, Source::Interpolated);
+    }
     const double at = turnOf(-pair.in.phi().degrees());
     const auto enclosed = placeOnCircle(deg_, at);
     const AxisPlace place = enclosed.value_or(around(deg_, at));
@@ -117,9 +135,12 @@ Answer RotationsEstimator::answer(const LightView& pair) const {
     AnswerBlend blend;
     blend.add(1 - place.t, low);
     blend.add(place.t, high);
-    const Source source = low.source == Source::Measured ? Source::Interpolated : low.source;
-    Answer answer = blend.sum(enclosed ? source : Source::Extrapolated);
-    widen(answer, low, high, place.t);
+    Answer answer = blend.sum(enclosed ? weaker(low.source, high.source) : Source::Extrapolated);
+    if (enclosed) {
+        widen(answer, (high.f + low.f * -1) * (2 * place.t * (1 - place.t)));
+    } else {
+        widen(answer, rangeAt(pair) * 0.5);
+    }
     return answer;
 }
 

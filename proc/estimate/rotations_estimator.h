@@ -7,8 +7,9 @@
 //
 // Its error by that is taken as half the difference of the two where they weigh alike, and
 // 2 t (1 - t) times the difference elsewhere: it is in u_systematic. Where no two neighbours
-// (axis.h, placeOnCircle) enclose the azimuth, the answer is flagged extrapolated. At the normal
-// the light has no azimuth, and the rotation nearest to azimuth 0 answers.
+// (axis.h, placeOnCircle) enclose the azimuth, the answer is flagged extrapolated and holds half of
+// what all rotations differ by instead. At the normal the light has no azimuth, and the rotation
+// nearest to azimuth 0 answers.
 
 #include <memory>
 #include <vector>
@@ -41,6 +42,8 @@ public:
 private:
     explicit RotationsEstimator(std::vector<Turn> turns);
     [[nodiscard]] Answer ofTurn(std::size_t turn, const LightView& pair) const;
+    /// Of all rotations' answers, largest less least, 1/sr.
+    [[nodiscard]] LedBands rangeAt(const LightView& pair) const;
 
     std::vector<Turn> turns_;  ///< ascending
     std::vector<double> deg_;
