@@ -253,10 +253,13 @@ void expectBrushedMerges(Lab& lab) {
         "model:lambert,albedo=0.2/0.1/0.05+ggx,alpha_x=0.2,alpha_y=0.35,f0=0.5";
     std::vector<MergeInput> turned;
     for (const Radians rotation : {0_deg, 45_deg, 90_deg}) {
-        turned.push_back({.file = fixed(rotation.degrees(), 0),
-                          .sample = lab.measured({.what = brushed, .turned = rotation}),
-                          .values = {},
-                          .band = {}});
+        turned.push_back(
+            {.file = fixed(rotation.degrees(), 0),
+             .sample = lab.measured({.what = brushed,
+                                     .turned = rotation,
+                                     .plan = {.frames = 1, .dim = false, .longest = 1}}),
+             .values = {},
+             .band = {}});
         const auto skew = verdictOf(*turned.back().sample, "plane symmetry");
         EXPECT_EQ(skew.grade, rotation == 45_deg ? Grade::Warned : Grade::Ok)
             << proc::described(skew);
