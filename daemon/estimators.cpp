@@ -144,4 +144,19 @@ Result<Estimated> openEstimated(const std::string& f,
     return Estimated{std::move(scatterer), std::move(*material)};
 }
 
+Result<Estimated> openSurface(const std::string& f,
+                              const std::filesystem::path& store,
+                              const std::string& estimator) {
+    if (estimator != "none" && holdsScattered(f)) {
+        return Error{
+            ErrorKind::Usage,
+            "'" + f + "' holds scattered values: --estimator is for .gonio, .bsdf and sample:NAME"};
+    }
+    if (!holdsScattered(f)) return openEstimated(f, store, {.name = estimator});
+    Result<Material> material = openMaterial(f, store);
+    if (!material) return material.error();
+    Opened scatterer = material->scatterer;
+    return Estimated{std::move(scatterer), std::move(*material)};
+}
+
 }  // namespace gonio::daemon

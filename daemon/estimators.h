@@ -52,4 +52,10 @@ struct Estimated {
                                               const EstimatorChoice& choice,
                                               proc::EvalPath path = {});
 
+/// Likewise a file of cells or nodes, or a formula, as itself where the name is none. Scattered
+/// values are a Usage error.
+[[nodiscard]] Result<Estimated> openSurface(const std::string& f,
+                                            const std::filesystem::path& store,
+                                            const std::string& estimator);
+
 }  // namespace gonio::daemon

@@ -29,40 +29,45 @@ std::string suffixOf(Band band) {
     return std::string("_") + static_cast<char>(std::toupper(letter(band).front()));
 }
 
-ExportedFile zemaxFile(const Material& surface, const proc::SpecularGrid& grid, Band band) {
-    const bool mono = surface.scatterer->bandCount() == BandCount::One;
-    proc::FilledTable filled = proc::fillTable(*surface.scatterer, grid, band);
+ExportedFile zemaxFile(const Scatterer& from, const proc::SpecularGrid& grid, Band band) {
+    const bool mono = from.bandCount() == BandCount::One;
+    proc::FilledTable filled = proc::fillTable(from, grid, band);
     if (!mono) filled.table.comments.push_back(proc::wavelengthComment(band));
     proc::Written written = proc::writeZemax(filled.table);
     written.loss.add("nodes without an answer, written as 0", filled.unanswered);
     written.loss.add("answers of exactly 0, which read back as missing", filled.exactZero);
     written.loss.add("uncertainties left out", filled.uncertain);
+    written.loss.add("answers beyond what was measured, extrapolated", filled.extrapolated);
     return {mono ? "" : suffixOf(band), std::move(written.bytes), std::move(written.loss)};
 }
 
 /// The stage's rotations, where the sample was ever turned.
-void turnAsMeasured(proc::SpecularGrid& grid, const proc::SampleSet& sample) {
-    const std::vector<Radians> rotations = proc::rotationsOf(sample);
-    if (rotations.size() == 1 && rotations.front() == Radians()) return;
+void turnAsMeasured(proc::SpecularGrid& grid, const Material& surface) {
+    std::vector<double> deg;
+    if (surface.table != nullptr) {
+        deg = surface.table->rotationDeg;
+    } else if (surface.sample != nullptr) {
+        for (const Radians one : proc::rotationsOf(*surface.sample)) {
+            deg.push_back(proc::fileDegrees(one));
+        }
+    }
+    if (deg.empty() || (deg.size() == 1 && deg.front() == 0)) return;
     grid.symmetry = proc::TableSymmetry::Asymmetrical4D;
-    grid.rotationDeg.clear();
-    for (const Radians one : rotations) grid.rotationDeg.push_back(proc::fileDegrees(one));
+    grid.rotationDeg = std::move(deg);
 }
 
-std::vector<ExportedFile> zemaxFiles(const Material& surface, std::optional<Band> only) {
-    if (surface.table != nullptr) {  // as it is: nothing to resample
-        proc::Written written = proc::writeZemax(*surface.table);
-        return {{"", std::move(written.bytes), std::move(written.loss)}};
-    }
+std::vector<ExportedFile> zemaxFiles(const Material& surface,
+                                     const Scatterer& from,
+                                     std::optional<Band> only) {
     std::vector<double> incidences;
     for (Radians i : surface.incidences()) incidences.push_back(proc::fileDegrees(i));
     auto grid = proc::SpecularGrid::oneDegree(incidences, proc::TableSymmetry::Asymmetrical);
-    if (surface.sample != nullptr) turnAsMeasured(grid, *surface.sample);
-    const bool mono = surface.scatterer->bandCount() == BandCount::One;
+    turnAsMeasured(grid, surface);
+    const bool mono = from.bandCount() == BandCount::One;
     std::vector<ExportedFile> files;
     for (Band band : kBands) {
         const bool wanted = mono ? band == Band::R : !only || *only == band;
-        if (wanted) files.push_back(zemaxFile(surface, grid, band));
+        if (wanted) files.push_back(zemaxFile(from, grid, band));
     }
     return files;
 }
@@ -90,7 +95,11 @@ std::optional<ExportFormat> formatOfExtension(std::string_view extension) {
 Result<std::vector<ExportedFile>> exportAs(const Material& surface,
                                            ExportFormat format,
                                            std::optional<Band> only) {
-    if (format == ExportFormat::Zemax) return zemaxFiles(surface, only);
+    if (format == ExportFormat::Zemax && surface.table != nullptr) {  // as it is
+        proc::Written written = proc::writeZemax(*surface.table);
+        return std::vector<ExportedFile>{{"", std::move(written.bytes), std::move(written.loss)}};
+    }
+    if (format == ExportFormat::Zemax) return zemaxFiles(surface, *surface.scatterer, only);
     if (surface.sample == nullptr) {
         return Error{
             ErrorKind::Usage,
@@ -102,6 +111,10 @@ Result<std::vector<ExportedFile>> exportAs(const Material& surface,
     Result<std::string> bytes = proc::encodeGonio(*surface.sample);
     if (!bytes) return bytes.error();
     return std::vector<ExportedFile>{{"", std::move(*bytes), {}}};
+}
+
+std::vector<ExportedFile> exportFilled(const Material& surface, const Scatterer& estimator) {
+    return zemaxFiles(surface, estimator, {});
 }
 
 }  // namespace gonio::daemon

@@ -38,5 +38,8 @@ struct ExportedFile {
 [[nodiscard]] Result<std::vector<ExportedFile>> exportAs(const Material& surface,
                                                          ExportFormat format,
                                                          std::optional<Band> only = {});
+/// Zemax, its nodes answered by an estimator of the surface.
+[[nodiscard]] std::vector<ExportedFile> exportFilled(const Material& surface,
+                                                     const Scatterer& estimator);
 
 }  // namespace gonio::daemon

@@ -150,7 +150,8 @@ Result<void> buildPrior(const CommonOptions& common, const PriorOptions& options
 struct ConvertOptions {
     std::string input;
     std::filesystem::path output;
-    std::string to;  ///< zemax, csv, gonio; empty: by the output's extension
+    std::string to;                  ///< zemax, csv, gonio; empty: by the output's extension
+    std::string estimator = "none";  ///< else it answers a table's nodes
 };
 Result<void> convert(const CommonOptions& common, const ConvertOptions& options);
 
@@ -169,6 +170,7 @@ struct ExportOptions {
     std::string file;
     std::filesystem::path output;
     std::string formats;  ///< of gonio, zemax, csv, with commas; empty: all that it can become
+    std::string estimator = "none";  ///< else it answers a table's nodes
 };
 Result<void> exportTo(const CommonOptions& common, const ExportOptions& options);
 

@@ -62,6 +62,17 @@ Result<void> writeExports(const CommonOptions& common,
     return {};
 }
 
+/// As it is, or with its nodes answered by the estimator.
+Result<std::vector<ExportedFile>> exportedAs(const Estimated& opened,
+                                             const std::string& estimator,
+                                             ExportFormat format) {
+    if (estimator == "none") return exportAs(opened.material, format);
+    if (format == ExportFormat::Zemax) return exportFilled(opened.material, *opened.scatterer);
+    return Error{ErrorKind::Usage,
+                 "--estimator answers the nodes of a .bsdf; a " + std::string(name(format)) +
+                     " holds what was measured: leave it out"};
+}
+
 /// The formats of a list such as "gonio,zemax"; all of them for an empty one.
 Result<std::vector<ExportFormat>> formatsOf(const std::string& list) {
     if (list.empty()) {
@@ -104,8 +115,8 @@ Result<void> eval(const CommonOptions& common, const EvalOptions& options) {
 }
 
 Result<void> convert(const CommonOptions& common, const ConvertOptions& options) {
-    const Result<Material> material = openMaterial(options.input, common.store);
-    if (!material) return material.error();
+    const Result<Estimated> opened = openSurface(options.input, common.store, options.estimator);
+    if (!opened) return opened.error();
     std::optional<ExportFormat> format = formatOfExtension(options.output.extension().string());
     if (!options.to.empty()) {
         const Result<ExportFormat> named = parseExportFormat(options.to);
@@ -117,7 +128,7 @@ Result<void> convert(const CommonOptions& common, const ConvertOptions& options)
                      "convert: '" + options.output.string() +
                          "': which format? Use .bsdf, .csv or .gonio, or --to zemax|csv|gonio"};
     }
-    const auto exported = exportAs(*material, *format);
+    const auto exported = exportedAs(*opened, options.estimator, *format);
     if (!exported) return exported.error().in("convert: '" + options.input + "'");
     Json files = Json::array();
     Result<void> done = writeExports(common, *exported, options.output, files);
@@ -129,17 +140,17 @@ Result<void> convert(const CommonOptions& common, const ConvertOptions& options)
 Result<void> exportTo(const CommonOptions& common, const ExportOptions& options) {
     const auto formats = formatsOf(options.formats);
     if (!formats) return formats.error();
-    const Result<Material> material = openMaterial(options.file, common.store);
-    if (!material) return material.error();
+    const Result<Estimated> opened = openSurface(options.file, common.store, options.estimator);
+    if (!opened) return opened.error();
     if (auto done = makeOutputFolder(options.output); !done) return done.error().in("export");
-    const std::string stem = fileNameOf(titleOf(options.file, *material));
+    const std::string stem = fileNameOf(titleOf(options.file, opened->material));
     Json files = Json::array();
     for (const ExportFormat format : *formats) {
-        if (options.formats.empty() && material->sample == nullptr &&
-            format != ExportFormat::Zemax) {
+        const bool other = opened->material.sample == nullptr || options.estimator != "none";
+        if (options.formats.empty() && other && format != ExportFormat::Zemax) {
             continue;  // nobody asked for what this surface cannot become
         }
-        const auto exported = exportAs(*material, format);
+        const auto exported = exportedAs(*opened, options.estimator, format);
         if (!exported) return exported.error().in("export: '" + options.file + "'");
         const fs::path file = options.output / (stem + std::string(extension(format)));
         if (Result<void> done = writeExports(common, *exported, file, files); !done) return done;

@@ -152,12 +152,6 @@ Json rawJson(const proc::RawCapture& capture) {
     return json;
 }
 
-Result<Estimated> asItIs(Result<Material> material) {
-    if (!material) return material.error();
-    std::shared_ptr<const Scatterer> scatterer = material->scatterer;
-    return Estimated{std::move(scatterer), std::move(*material)};
-}
-
 struct Info {
     Json file;
     std::optional<EstimatorFacts> estimator;  ///< where one was asked for
@@ -175,13 +169,7 @@ Result<Info> infoOf(const CommonOptions& common, const InfoOptions& options) {
         return Info{rawJson(*capture), {}};
     }
     const bool estimates = options.estimator != "none";
-    if (estimates && std::filesystem::path(file).extension() == ".csv") {
-        return Error{ErrorKind::Usage,
-                     "info: '" + file + "': --estimator is for .gonio, .bsdf and sample:NAME"};
-    }
-    const Result<Estimated> opened =
-        estimates ? openEstimated(file, common.store, {.name = options.estimator})
-                  : asItIs(openMaterial(file, common.store));
+    const Result<Estimated> opened = openSurface(file, common.store, options.estimator);
     if (!opened) return opened.error();
     const Material& material = opened->material;
     Json json = {{"kind", material.kind}};

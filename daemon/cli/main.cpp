@@ -336,6 +336,9 @@ void Program::addFiles() {
     sub->add_option("output", convert.output, "the file to write (.bsdf, .csv, .gonio)")
         ->required();
     sub->add_option("--to", convert.to, "zemax, csv or gonio, where the extension does not tell");
+    sub->add_option("--estimator",
+                    convert.estimator,
+                    "what answers a table's nodes: none (what was measured), auto, or by name");
 
     sub = command(app, "merge", "make one file of rotations, repeats or bands of a sample", [this] {
         return daemon::merge(common, merge);
@@ -356,6 +359,9 @@ void Program::addFiles() {
     sub->add_option("file", exported.file, "a file, sample:NAME or model:SPEC")->required();
     sub->add_option("-o,--output", exported.output, "folder")->required();
     sub->add_option("--formats", exported.formats, "of gonio, zemax, csv, with commas");
+    sub->add_option("--estimator",
+                    exported.estimator,
+                    "what answers a table's nodes: none (what was measured), auto, or by name");
 
     sub = command(app, "plot", "hemisphere maps and in-plane slices as SVG", [this] {
         return daemon::plot(common, plot);

@@ -180,7 +180,8 @@ MethodScore scoreOf(const std::string& name, const Trials::Errors& errors) {
     MethodScore score{.name = name,
                       .hemisphere = rootOf(errors.between, even),
                       .lobe = rootOf(errors.between, lobe),
-                      .beyond = {}};
+                      .beyond = {},
+                      .anchored = errors.anchored};
     if (errors.last.empty()) return score;
     const double last = rootOf(errors.last, even);
     // Where the edge cannot be asked, as if it were as wrong.
@@ -273,15 +274,19 @@ MethodChoice chooseMethod(const BrdfData& data,
     // What was fitted to a part of the data need not have been to all of it.
     const auto leastWrong = [&](const auto& wrongBy) {
         for (const std::size_t i : ranked(choice.scores, wrongBy)) {
+            if (!std::isfinite(wrongBy(choice.scores[i]))) break;
             ChosenMethod one{made(choice.scores[i].name), modelOf(scale, errors[i]), true};
             if (one.method) return one;
         }
         return ChosenMethod{};
     };
     choice.between = leastWrong([](const MethodScore& score) { return score.between(); });
-    choice.beyond = leastWrong([](const MethodScore& score) {
-        return score.beyond.value_or(std::numeric_limits<double>::infinity());
-    });
+    constexpr double kNever = std::numeric_limits<double>::infinity();
+    choice.anchored = leastWrong(
+        [](const MethodScore& score) { return score.anchored ? score.between() : kNever; });
+    choice.beyond =
+        leastWrong([&](const MethodScore& score) { return score.beyond.value_or(kNever); });
+    if (!choice.beyond.method) choice.beyond = choice.between;
     if (!choice.between.method) {
         const auto best = bestByChiSquare(data, choice.carriers);
         const std::string standard = best ? "carried:" + *best : "specular-log";

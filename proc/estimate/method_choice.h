@@ -35,6 +35,7 @@ struct MethodScore {
     double hemisphere = 0;         ///< at incidences that were left out
     double lobe = 0;               ///< there where f is above a tenth of its largest
     std::optional<double> beyond;  ///< at the last incidence and the edge, left out
+    bool anchored = true;          ///< IncidenceMethod::anchored
     [[nodiscard]] double between() const { return std::hypot(hemisphere, lobe); }
 };
 
@@ -47,6 +48,7 @@ struct ChosenMethod {
 struct MethodChoice {
     ChosenMethod between;
     ChosenMethod beyond;
+    ChosenMethod anchored;  ///< the best between of the anchored; no method where none was asked
     std::vector<MethodScore> scores;  ///< of all candidates, by between()
     Carriers carriers;                ///< fitted to all incidences
 };

@@ -230,9 +230,21 @@ std::array<bool, 3> SampleEstimator::measuredBands(const LightView& pair) const 
     return usable;
 }
 
+const ChosenMethod& SampleEstimator::methodBetween(const LightView& pair) const {
+    const MethodChoice& chosen = choice();
+    if (!chosen.anchored.method || chosen.between.method->anchored()) return chosen.between;
+    const auto reach = coverage_.at(withLightAtZero(pair));
+    const bool measured =
+        std::all_of(reach.begin(),
+                    reach.begin() + static_cast<std::ptrdiff_t>(data_.bandsUsed()),
+                    [&](const Reach& one) { return isMeasured(*chosen.anchored.method, one); });
+    return measured ? chosen.anchored : chosen.between;
+}
+
 Answer SampleEstimator::estimate(const LightView& pair) const {
     const MethodChoice& chosen = choice();
-    const Part inside = partOf(chosen.between, coverage_, pair);
+    const ChosenMethod& between = methodBetween(pair);
+    const Part inside = partOf(between, coverage_, pair);
     LedBands share;  // of the method beyond
     double least = 1;
     double most = 0;
@@ -251,7 +263,7 @@ Answer SampleEstimator::estimate(const LightView& pair) const {
     bool errorKnown = least >= 1 || inside.errorKnown;
     // Of three bands, the one that is farthest from what was measured says where the answer is
     // from.
-    if (most < 0.5) labelBetween(answer, kindOf(*chosen.between.method), exchanged);
+    if (most < 0.5) labelBetween(answer, kindOf(*between.method), exchanged);
     if (most > 0) {
         const Part outside = partOf(chosen.beyond, coverage_, pair);
         for (const Band band : kBands) {

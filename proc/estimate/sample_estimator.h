@@ -8,7 +8,8 @@
 //   reciprocity    the pair is asked with light and view exchanged, too, and both are weighted by
 //                  how far they are from what was measured (reciprocal_method.h)
 //   interpolated   by the method that predicts this sample's own incidences best, mostly the ratio
-//                  to a fitted model that is carried (method_choice.h)
+//                  to a fitted model that is carried (method_choice.h); between the cells of an
+//                  incidence that was measured, by the best of those that keep to them
 //   prior, model   beyond the incidences and theta_o that were measured: the method that predicts
 //                  best what is outermost; the two methods blend over 5 degrees of incidence or 3
 //                  layers of cells
@@ -72,6 +73,8 @@ private:
                     SampleEstimatorOptions options);
     void choose() const;
     [[nodiscard]] Answer estimate(const LightView& pair) const;
+    /// Between the cells of an incidence that was measured, one that keeps to them.
+    [[nodiscard]] const ChosenMethod& methodBetween(const LightView& pair) const;
     /// Those of which the pair's cell has a value that can be used.
     [[nodiscard]] std::array<bool, 3> measuredBands(const LightView& pair) const;
 

@@ -25,29 +25,35 @@ TableNode nodeAt(const SpecularTable& table, std::size_t i) {
 }
 
 /// What a node above the horizon was answered.
-enum class Got : unsigned char {
-    NotAsked,
-    Nothing,
-    Zero,
-    Value,
-    ValueWithUncertainty
+struct Got {
+    enum Kind : unsigned char {
+        NotAsked,
+        Nothing,
+        Zero,
+        Value
+    };
+    Kind kind = NotAsked;
+    bool uncertain = false;
+    bool extrapolated = false;
 };
 
 Got ask(const Scatterer& from, const LightView& pair, Band band, double& f) {
     const Answer answer = from.answer(pair);
-    if (std::isnan(answer.f[band])) return Got::Nothing;
+    if (std::isnan(answer.f[band])) return {Got::Nothing};
     f = answer.f[band];
-    if (f == 0) return Got::Zero;
-    return answer.uRandom || answer.uSystematic ? Got::ValueWithUncertainty : Got::Value;
+    return {.kind = f == 0 ? Got::Zero : Got::Value,
+            .uncertain = f != 0 && (answer.uRandom || answer.uSystematic),
+            .extrapolated = answer.flags.has(Flag::Extrapolated)};
 }
 
 void count(FilledTable& filled, const std::vector<Got>& got) {
     for (const Got g : got) {
-        if (g == Got::NotAsked) continue;
+        if (g.kind == Got::NotAsked) continue;
         ++filled.nodes;
-        if (g == Got::Nothing) ++filled.unanswered;
-        if (g == Got::Zero) ++filled.exactZero;
-        if (g == Got::ValueWithUncertainty) ++filled.uncertain;
+        if (g.kind == Got::Nothing) ++filled.unanswered;
+        if (g.kind == Got::Zero) ++filled.exactZero;
+        if (g.uncertain) ++filled.uncertain;
+        if (g.extrapolated) ++filled.extrapolated;
     }
 }
 
@@ -70,7 +76,7 @@ FilledTable fillTable(const Scatterer& from, const SpecularGrid& grid, Band band
     table.azimuthDeg = grid.azimuthDeg;
     table.radialDeg = grid.radialDeg;
     TablePlane plane{.f = std::vector(table.nodeCount(), 0.0), .tis = {}};
-    std::vector<Got> got(table.nodeCount(), Got::NotAsked);
+    std::vector<Got> got(table.nodeCount());
     parallelFor(table.nodeCount(), [&](IndexRange range) {
         for (std::size_t i = range.begin; i < range.end; ++i) {
             const TableNode node = nodeAt(table, i);

@@ -21,10 +21,11 @@ struct SpecularGrid {
 
 struct FilledTable {
     SpecularTable table;
-    std::size_t nodes = 0;       ///< above the horizon
-    std::size_t unanswered = 0;  ///< of these, without an answer: 0 in the table
-    std::size_t exactZero = 0;   ///< answered 0: reads back as missing
-    std::size_t uncertain = 0;   ///< answered with an uncertainty, which the table cannot hold
+    std::size_t nodes = 0;         ///< above the horizon
+    std::size_t unanswered = 0;    ///< of these, without an answer: 0 in the table
+    std::size_t exactZero = 0;     ///< answered 0: reads back as missing
+    std::size_t uncertain = 0;     ///< answered with an uncertainty, which the table cannot hold
+    std::size_t extrapolated = 0;  ///< answered from beyond what was measured
 };
 
 [[nodiscard]] FilledTable fillTable(const Scatterer& from, const SpecularGrid& grid, Band band);

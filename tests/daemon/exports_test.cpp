@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "proc/estimate/sample_estimator.h"
 #include "proc/formats/gonio_exr.h"
 #include "proc/formats/zemax.h"
 #include "tests/formats/small_files.h"
@@ -99,6 +100,33 @@ TEST_F(Exports, ZemaxTakesAFileForEachBandAndSaysWhatIsLost) {
     ASSERT_TRUE(one) << one.error().message;
     ASSERT_EQ(one->size(), 1U);
     EXPECT_EQ(one->front().bytes, (*files)[1].bytes);
+}
+
+TEST_F(Exports, AnEstimatorAnswersTheNodesThatWereNotMeasured) {
+    const Material surface = sample();
+    const auto estimator = proc::SampleEstimator::over(
+        *surface.sample, {.method = "specular-log", .effort = Effort::Draft});
+    ASSERT_TRUE(estimator) << estimator.error().message;
+    const auto lost = [](const ExportedFile& file, const std::string& what) {
+        for (const auto& item : file.loss.items) {
+            if (item.what == what) return item.count;
+        }
+        return std::size_t{0};
+    };
+    const std::string unanswered = "nodes without an answer, written as 0";
+    const std::string extrapolated = "answers beyond what was measured, extrapolated";
+    const auto plain = exportAs(surface, ExportFormat::Zemax, Band::R);
+    ASSERT_TRUE(plain);
+    EXPECT_GT(lost(plain->front(), unanswered), 0U);
+    EXPECT_EQ(lost(plain->front(), extrapolated), 0U);
+    const auto filled = exportFilled(surface, **estimator);
+    ASSERT_EQ(filled.size(), 3U);
+    EXPECT_EQ(lost(filled[0], unanswered), 0U);
+    EXPECT_EQ(lost(filled[0], extrapolated), lost(plain->front(), unanswered));
+    const auto table = proc::parseZemax(filled[0].bytes, "filled");
+    ASSERT_TRUE(table) << table.error().message;
+    EXPECT_GT(table->planes[0].tis[0],
+              proc::parseZemax(plain->front().bytes, "x")->planes[0].tis[0]);
 }
 
 TEST_F(Exports, ZemaxFileIsWrittenAsItIs) {

@@ -124,6 +124,25 @@ TEST(SampleEstimator, ChoosesWhatIsRightBetweenAndBeyondTheAngles) {
     }
 }
 
+/// A lobe that leans out of the plane is no isotropic model's: where the light was measured, the
+/// cells say so, and between two of them, too.
+TEST(SampleEstimator, KeepsToTheCellsOfAnIncidenceThatWasMeasured) {
+    const auto surface = plastic();
+    SampleSet set = plasticSample();
+    for (LedTable& led : set.leds) {
+        for (CellSamples& cells : led.bands) {
+            for (std::size_t i = 0; i < cells.size(); ++i) {
+                cells.f[i] *= 1 + 0.3 * CellGrid::centre(i).y();
+            }
+        }
+    }
+    const auto made = estimator(set);
+    const Answer answer = made->answer(pairOf(40, 50, 90));  // between four cells
+    const double leaning = surface->answer(pairOf(40, 50, 90)).f[Band::R] * (1 + 0.3 * sin(50_deg));
+    EXPECT_NEAR(answer.f[Band::R], leaning, 0.02 * leaning);
+    EXPECT_NEAR(answer.f[Band::R], leaning, 3 * *answer.u(Band::R));
+}
+
 TEST(SampleEstimator, SaysWhereAnAnswerComesFrom) {
     const auto carried =
         estimator(plasticSample(), {.method = "carried:lambert+ggx", .effort = Effort::Draft});
