@@ -27,7 +27,8 @@ struct ProbeError {
     bool even = true;    ///< of an even choice over the hemisphere; else one more of the lobe
     bool lobe = false;   ///< f is above a tenth of the incidence's largest
 
-    /// Relative, less what noise makes; may be negative. At most 2 however dark f is.
+    /// Relative, less what noise makes; may be negative. At most 4, and 2 of values of one sign,
+    /// however dark f is.
     [[nodiscard]] double squared() const { return (off * off - u * u) / (toBoth * toBoth); }
 };
 

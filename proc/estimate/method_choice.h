@@ -28,7 +28,7 @@
 namespace gonio::proc {
 
 /// Relative errors (error_scale.h), root mean square less the noise. Each is relative to what was
-/// measured and to the answer alike, so that no value counts for more than an error of 141 %: a
+/// measured and to the answer alike, so that no value counts for more than an error of 200 %: a
 /// dark cell cannot outweigh a lobe.
 struct MethodScore {
     std::string name;

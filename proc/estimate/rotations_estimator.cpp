@@ -29,23 +29,21 @@ private:
     Radians rotation_;
 };
 
+double turnOf(double degrees) {
+    const double turn = std::fmod(degrees, 360);
+    return turn < 0 ? turn + 360 : turn;
+}
+
 /// Between which two nodes of a circle, however far apart.
 AxisPlace around(const std::vector<double>& deg, double at) {
     const auto next = std::upper_bound(deg.begin(), deg.end(), at);
     const std::size_t high = next == deg.end() ? 0 : static_cast<std::size_t>(next - deg.begin());
     const std::size_t low = high == 0 ? deg.size() - 1 : high - 1;
-    const auto forward = [](double from, double to) {
-        const double turn = std::fmod(to - from, 360);
-        return turn < 0 ? turn + 360 : turn;
-    };
-    const double gap = forward(deg[low], deg[high]);
-    return {low, high, gap > 0 ? forward(deg[low], at) / gap : 0};
+    const double gap = turnOf(deg[high] - deg[low]);
+    return {low, high, gap > 0 ? turnOf(at - deg[low]) / gap : 0};
 }
 
-double turnOf(double degrees) {
-    const double turn = std::fmod(degrees, 360);
-    return turn < 0 ? turn + 360 : turn;
-}
+bool isNormal(const LightView& pair) { return pair.in.theta() < 1e-6_deg; }
 
 void widen(Answer& answer, const LedBands& by) {
     if (!answer.uSystematic) return;
@@ -102,30 +100,48 @@ BandCount RotationsEstimator::bandCount() const { return turns_.front().estimato
 
 Answer RotationsEstimator::ofTurn(std::size_t turn, const LightView& pair) const {
     // At the normal the view alone says how the sample lay.
-    const bool normal = pair.in.theta() < 1e-6_deg;
     const LightView at{.in = pair.in,
-                       .out = normal ? pair.out.turned(turns_[turn].rotation) : pair.out};
+                       .out = isNormal(pair) ? pair.out.turned(turns_[turn].rotation) : pair.out};
     return turns_[turn].estimator->answer(at);
 }
 
-LedBands RotationsEstimator::rangeAt(const LightView& pair) const {
-    LedBands least, most;
-    least.value.fill(std::nan(""));
-    most = least;
-    for (std::size_t turn = 0; turn < turns_.size(); ++turn) {
-        const Answer one = ofTurn(turn, pair);
+std::optional<LedBands> RotationsEstimator::chordError(const AxisPlace& place,
+                                                       const LightView& pair,
+                                                       const Answer& low,
+                                                       const Answer& high) const {
+    const std::size_t count = turns_.size();
+    const std::size_t before = (place.low + count - 1) % count;
+    const std::size_t after = (place.high + 1) % count;
+    const double step = turnOf(deg_[place.high] - deg_[place.low]);
+    const auto isNear = [&](std::size_t from, std::size_t to) {
+        return turnOf(deg_[to] - deg_[from]) <= 1.5 * step;
+    };
+    LedBands second;
+    bool known = false;
+    const auto bend = [&](const Answer& a, const Answer& b, const Answer& c) {
+        known = true;
         for (const Band band : kBands) {
-            least[band] = std::fmin(least[band], one.f[band]);
-            most[band] = std::fmax(most[band], one.f[band]);
+            const double d = std::abs(a.f[band] - 2 * b.f[band] + c.f[band]);
+            second[band] = std::fmax(second[band], d);
         }
+    };
+    if (count > 2 && isNear(before, place.low)) bend(ofTurn(before, pair), low, high);
+    if (count > 2 && isNear(place.high, after)) bend(low, high, ofTurn(after, pair));
+    if (!known) return std::nullopt;
+    const double weight = place.t * (1 - place.t);
+    LedBands error;
+    for (const Band band : kBands) {
+        error[band] =
+            weight * std::fmax(0.5 * second[band], 2 * std::abs(high.f[band] - low.f[band]));
     }
-    return most + least * -1;
+    return error;
 }
 
 Answer RotationsEstimator::answer(const LightView& pair) const {
     if (!pair.in.aboveHorizon() || !pair.out.aboveHorizon()) {
         return Answer::none({Flag::BelowHorizon}, Source::Interpolated);
     }
+    if (isNormal(pair)) return ofTurn(0, pair);
     const double at = turnOf(-pair.in.phi().degrees());
     const auto enclosed = placeOnCircle(deg_, at);
     const AxisPlace place = enclosed.value_or(around(deg_, at));
@@ -136,10 +152,12 @@ Answer RotationsEstimator::answer(const LightView& pair) const {
     blend.add(1 - place.t, low);
     blend.add(place.t, high);
     Answer answer = blend.sum(enclosed ? weaker(low.source, high.source) : Source::Extrapolated);
-    if (enclosed) {
-        widen(answer, (high.f + low.f * -1) * (2 * place.t * (1 - place.t)));
+    const auto error = enclosed ? chordError(place, pair, low, high) : std::nullopt;
+    if (error) {
+        widen(answer, *error);
     } else {
-        widen(answer, rangeAt(pair) * 0.5);
+        answer.uRandom.reset();
+        answer.uSystematic.reset();
     }
     return answer;
 }

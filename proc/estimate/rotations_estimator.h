@@ -5,16 +5,23 @@
 // rotations. Between two neighbouring rotations an answer is linear in the light's azimuth, at
 // equal angles between light and view.
 //
-// Its error by that is taken as half the difference of the two where they weigh alike, and
-// 2 t (1 - t) times the difference elsewhere: it is in u_systematic. Where no two neighbours
-// (axis.h, placeOnCircle) enclose the azimuth, the answer is flagged extrapolated and holds half of
-// what all rotations differ by instead. At the normal the light has no azimuth, and the rotation
-// nearest to azimuth 0 answers.
+// Its error by that is a chord's: with d the larger second difference over the four rotations about
+// the azimuth (f_before - 2 f_low + f_high, f_low - 2 f_high + f_after), t (1 - t) / 2 times d, and
+// no less than 2 t (1 - t) times the difference of the two; it is in u_systematic. A wave of half a
+// turn at steps of 45 degrees errs by up to 1.7 times as much. Where only one of the outer two is
+// there, it is one difference; where none is (two rotations), and where no two neighbours enclose
+// the azimuth (axis.h, placeOnCircle; flagged extrapolated), no uncertainty is known, and none
+// told.
+//
+// At the normal the light has no azimuth, and the first rotation answers; beside it each rotation
+// is asked at the angle between light and view, as everywhere.
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "proc/estimate/sample_estimator.h"
+#include "proc/table/axis.h"
 
 namespace gonio::proc {
 
@@ -42,8 +49,11 @@ public:
 private:
     explicit RotationsEstimator(std::vector<Turn> turns);
     [[nodiscard]] Answer ofTurn(std::size_t turn, const LightView& pair) const;
-    /// Of all rotations' answers, largest less least, 1/sr.
-    [[nodiscard]] LedBands rangeAt(const LightView& pair) const;
+    /// Standard error of an answer between two rotations, 1/sr; empty where nobody knows.
+    [[nodiscard]] std::optional<LedBands> chordError(const AxisPlace& place,
+                                                     const LightView& pair,
+                                                     const Answer& low,
+                                                     const Answer& high) const;
 
     std::vector<Turn> turns_;  ///< ascending
     std::vector<double> deg_;

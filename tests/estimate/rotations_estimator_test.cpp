@@ -70,6 +70,12 @@ TEST_F(Grained, IsAnsweredAtEachAzimuthOfTheLight) {
         }
     }
     EXPECT_GE(within, 0.9 * all);
+    // Halfway to an extremum both neighbours are alike, and their own neighbours tell of the bend.
+    const auto shifted = over({22.5, 67.5, 112.5, 157.5, 202.5, 247.5, 292.5, 337.5});
+    const LightView peak = pairOf(55, 0, 40, 130);
+    const Answer flat = shifted->answer(peak);
+    EXPECT_LE(std::abs(flat.f[Band::R] - grained(peak)), 2 * *flat.u(Band::R));
+    EXPECT_GT(*flat.u(Band::R), 0.02 * grained(peak));
     // What is exchanged belongs to another azimuth: with it, 40 degrees would be measured here.
     const Answer along = estimator->answer(pairOf(70, 0, 40, 90));
     EXPECT_NE(along.source, Source::Reciprocity);
@@ -89,7 +95,7 @@ TEST_F(Grained, AMeasuredCellOfARotationIsThatCell) {
     // At the normal all rotations saw the same, each from its side.
     const Answer normal = (*made)->answer(
         {.in = Direction::fromSpherical(0_deg, 0_deg), .out = CellGrid::centre(cell)});
-    EXPECT_TRUE(normal.present());
+    EXPECT_EQ(normal.f[Band::R], set.leds[0].bands[0].f[cell]) << "of the first rotation";
 }
 
 TEST_F(Grained, FarFromTheRotationsIsSaidToBeExtrapolated) {
@@ -98,6 +104,10 @@ TEST_F(Grained, FarFromTheRotationsIsSaidToBeExtrapolated) {
     const Answer far = estimator->answer(pairOf(30, 150, 40, 100));
     EXPECT_TRUE(far.present());
     EXPECT_TRUE(far.flags.has(Flag::Extrapolated));
+    EXPECT_FALSE(far.u(Band::R)) << "nobody knows";
+    // Of two rotations no bend can be seen.
+    const auto two = over({0, 90});
+    EXPECT_FALSE(two->answer(pairOf(30, -45, 40, 100)).u(Band::R));
     EXPECT_EQ(far.source, Source::Extrapolated);
 }
 
