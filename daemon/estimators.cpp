@@ -37,6 +37,7 @@ Result<Prior> priorOf(const EstimatorChoice& choice) {
 std::vector<Radians> rotationsOf(const Material& material) {
     if (material.sample != nullptr) return proc::rotationsOf(*material.sample);
     std::vector<Radians> rotations;
+    rotations.reserve(material.table->rotationDeg.size());
     for (const double deg : material.table->rotationDeg) {
         rotations.push_back(proc::rotationOf(deg));
     }

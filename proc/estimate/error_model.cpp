@@ -32,6 +32,7 @@ private:
     /// The square of the standard error of which `k` hold as many errors as they do of a Gaussian.
     [[nodiscard]] double squareWithin(double k) const {
         std::vector<std::pair<double, double>> squares;
+        squares.reserve(errors_.size());
         for (const Square& e : errors_) squares.emplace_back(e.off / (k * k) - e.u, e.weight);
         std::sort(squares.begin(), squares.end());
         const double wanted = std::erf(k / std::sqrt(2.0)) * weight_;

@@ -25,7 +25,7 @@ struct Candidate {
     std::function<Method(const View&)> make;  ///< null where it cannot be made
 };
 
-Candidate ofSheets(SheetMethodOptions options) {
+Candidate ofSheets(const SheetMethodOptions& options) {
     return {options.name, [options](const View& view) -> Method {
                 return sheetMethod(view.data, view.groups, options);
             }};
