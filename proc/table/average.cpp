@@ -217,7 +217,7 @@ private:
                                         same.away[i],
                                         present.values[i].value.value / middle - 1});
         }
-        mean.uRandom[place.cell] *= same.widening();
+        mean.uRandom[place.cell] = std::max(mean.uRandom[place.cell], same.uAgreed);
         if (same.group.outliers > 0) return;
         double squares = 0;
         for (const CellValue& one : present.values) squares += std::pow(one.value.uRandom, 2);

@@ -34,7 +34,7 @@ std::optional<Sight> sightOf(const CellSamples& cells, const Direction& wo, doub
 
 void move(CellSamples& cells, const Sight& sight, const CellMean& mean) {
     cells.f[sight.cell] += mean.mean.value - sight.value.value.value;
-    cells.uRandom[sight.cell] = mean.mean.uRandom * mean.widening();
+    cells.uRandom[sight.cell] = mean.uRandom();
     cells.uSystematic[sight.cell] = mean.mean.uSystematic;
     cells.flags[sight.cell].set(Flag::Reciprocity);
 }

@@ -64,7 +64,7 @@ TEST(CellMean, AveragesWhatIsRandomAndKeepsWhatIsNot) {
     EXPECT_NEAR(mean.mean.uSystematic, 0.8 * 0.1 + 0.2 * 0.2, 1e-15);
     EXPECT_NEAR(mean.group.chiSquare, 1 / (0.3 * 0.3 + 0.6 * 0.6), 1e-12);
     EXPECT_EQ(mean.group.freedom, 1U);
-    EXPECT_EQ(mean.widening(), 1);
+    EXPECT_EQ(mean.uRandom(), mean.mean.uRandom);
 
     const std::vector<CellValue> one{value(-0.25, 0.125, 0.5)};
     EXPECT_EQ(meanOf(one).mean.value, -0.25);
@@ -75,7 +75,13 @@ TEST(CellMean, AveragesWhatIsRandomAndKeepsWhatIsNot) {
     const std::vector<CellValue> off{value(1, 0.01, 0), value(1.01, 0.01, 0), value(2, 0.01, 0)};
     EXPECT_LT(meanOf(off).mean.value, 1.1);
     EXPECT_GT(meanOf(off).away[2], kOutlier);
-    EXPECT_GT(meanOf(off).mean.uRandom * meanOf(off).widening(), 0.2);
+    EXPECT_GT(meanOf(off).uRandom(), 0.2);
+
+    // What contradicts is the whole of u_apart: sqrt(50 / 1) * 0.02 / sqrt(2), most of it
+    // systematic.
+    std::vector<CellValue> apart{value(1, 0.001, 0.02), value(1.2, 0.001, 0.02)};
+    for (CellValue& each : apart) each.uApart = apartFrom(each.value, 0);
+    EXPECT_NEAR(meanOf(apart).uRandom(), 0.1, 1e-3);
 
     // No uncertainty at all: what is equal agrees.
     const std::vector<CellValue> exact{value(0.5, 0, 0), value(0.5, 0, 0)};
