@@ -207,7 +207,8 @@ TEST(ReciprocalAverage, BringsPairsOfAnyTwoRotationsTogether) {
         }
     }
     const Reciprocal good = reciprocalAverage(set);
-    EXPECT_EQ(good.pairs, 3U * 12U);  // 2 x 2 rotations of each of three pairs of LEDs
+    // 2 x 2 rotations of each of three pairs of LEDs, and each LED with itself turned.
+    EXPECT_EQ(good.pairs, 3U * (12U + 3U));
     EXPECT_LT(good.consistency.perFreedom(), 0.01);  // bilinear alone
     for (CellSamples& cells : set.leds[2].bands) {
         for (double& f : cells.f) f *= 1.2;
@@ -217,6 +218,24 @@ TEST(ReciprocalAverage, BringsPairsOfAnyTwoRotationsTogether) {
     const std::size_t cell = *CellGrid::cellAt(Direction::fromSpherical(20_deg, Radians(0)));
     EXPECT_TRUE(bad.set.leds[2].bands[0].flags[cell].has(Flag::Reciprocity));
     EXPECT_LT(bad.set.leds[2].bands[0].f[cell], set.leds[2].bands[0].f[cell]);
+}
+
+/// A cell that has several partners moves to the mean of all, not by each of them in turn.
+TEST(ReciprocalAverage, MovesACellOnceHoweverManyPartnersItHas) {
+    const auto flat = [](double f) {
+        return test::ledTable(20_deg, [f](Radians, const Direction&) { return f; });
+    };
+    SampleSet set;
+    set.leds = {flat(1.09), flat(1), flat(1), flat(1)};
+    for (std::size_t i = 1; i < 4; ++i) {
+        set.leds[i].incidence = Radians();
+        set.leds[i].rotation = rotationOf(30.0 * static_cast<double>(i));
+    }
+    const SampleSet averaged = reciprocalAverage(set).set;
+    const std::size_t normal = *CellGrid::cellAt(Direction::fromSpherical(0_deg, Radians()));
+    // u_apart is 2.24 % of f: weights 1 / 1.09^2, 1, 1, 1.
+    EXPECT_NEAR(red(averaged).f[normal], (1 / 1.09 + 3) / (1 / (1.09 * 1.09) + 3), 1e-9);
+    EXPECT_NEAR(red(averaged).uRandom[normal], 0.01 / std::sqrt(1 / (1.09 * 1.09) + 3), 1e-9);
 }
 
 }  // namespace
