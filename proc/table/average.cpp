@@ -124,29 +124,62 @@ private:
         return present;
     }
 
-    /// k_i of each part, from the cells that all of them have.
+    /// In the median over the cells that all parts have: how much brighter each is than the first.
+    /// What a speck of dust does not reach, however much the light changed.
+    static void roughScales(std::vector<Part>& parts) {
+        std::vector<std::vector<double>> ratios(parts.size());
+        for (std::size_t cell = 0; cell < CellGrid::count(); ++cell) {
+            const Present present = presentIn(parts, cell);
+            if (present.values.size() < parts.size()) continue;
+            const double first = present.values.front().value.value;
+            if (!(first > 0)) continue;
+            for (std::size_t i = 0; i < parts.size(); ++i)
+                ratios[i].push_back(present.values[i].value.value / first);
+        }
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            const double scale = ratios[i].empty() ? 1 : median(std::move(ratios[i]));
+            parts[i].scale = scale > 0 ? scale : 1;
+        }
+    }
+
+    /// Over each part's scale.
+    static void unscale(Present& present) {
+        for (std::size_t i = 0; i < present.values.size(); ++i) {
+            const double scale = present.parts[i]->scale;
+            present.values[i].value.value /= scale;
+            present.values[i].value.uRandom /= scale;
+            present.values[i].uApart /= scale;
+        }
+    }
+
+    /// k_i of each part, from the cells that all of them have and agree on but for the light.
     void findScales(std::vector<Part>& parts, Radians incidence, Band band) {
         if (parts.size() < 2) return;
+        roughScales(parts);
         std::vector<double> product(parts.size()), square(parts.size());
         for (std::size_t cell = 0; cell < CellGrid::count(); ++cell) {
             const Present present = presentIn(parts, cell);
             if (present.values.size() < parts.size()) continue;
-            const CellMean mean = meanOf(present.values);
-            if (mean.group.outliers > 0) continue;  // a speck of dust is no change of the light
-            const double m = mean.mean.value;
+            Present agreeing = present;
+            unscale(agreeing);
+            if (meanOf(agreeing.values).group.outliers > 0) continue;  // dust is no change of light
+            const double m = meanOf(present.values).mean.value;
             for (std::size_t i = 0; i < parts.size(); ++i) {
                 const double w = 1 / std::pow(std::max(present.values[i].uApart, 1e-30), 2);
                 product[i] += w * present.values[i].value.value * m;
                 square[i] += w * m * m;
             }
         }
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            if (!(square[i] > 0) || !(product[i] > 0)) {
+                for (Part& part : parts) part.scale = 1;
+                return;
+            }
+        }
         const auto count = static_cast<double>(parts.size());
         ConsistencySum::Group group{.freedom = parts.size() - 1};
         double squares = 0;
-        for (std::size_t i = 0; i < parts.size(); ++i) {
-            if (!(square[i] > 0)) return;
-            parts[i].scale = product[i] / square[i];
-        }
+        for (std::size_t i = 0; i < parts.size(); ++i) parts[i].scale = product[i] / square[i];
         for (std::size_t i = 0; i < parts.size(); ++i) {
             const double u = std::hypot(1 / std::sqrt(square[i]), parts[i].light);
             const double off = parts[i].scale - 1;
@@ -196,13 +229,7 @@ private:
     /// other, the mean's u_random is what they agree to.
     void judge(Present& present, const Place& place, CellSamples& mean) {
         if (present.values.size() < 2) return;
-        for (std::size_t i = 0; i < present.values.size(); ++i) {
-            Measured<double>& value = present.values[i].value;
-            const double scale = present.parts[i]->scale;
-            value.value /= scale;
-            value.uRandom /= scale;
-            present.values[i].uApart /= scale;
-        }
+        unscale(present);
         const CellMean same = meanOf(present.values);
         cells_.add(same.group);
         const double middle = same.mean.value;

@@ -8,8 +8,9 @@
 //     k_i = sum(w f_i m) / sum(w m^2),   w = 1 / u_apart,i^2,
 // is how much brighter capture i is than the mean, with u(k_i)^2 = 1 / sum(w m^2) + s^2 and s the
 // part of one capture in the budget's `per state` components: 1 / sqrt(2) of it where the white is
-// the same, all of it else. The cells are then held against k_i m. Both go into a chi-square of
-// their own; f itself is averaged as it was measured, k_i included.
+// the same, all of it else. Cells that contradict each other though the median ratio of each
+// capture to the first is divided out have no part in it. The cells are then held against k_i m.
+// Both go into a chi-square of their own; f itself is averaged as it was measured, k_i included.
 //
 // A cell that is missing, or has no uncertainty, in some captures is the mean of the others; in
 // all, it is missing. Without a budget all of u_systematic is taken as each capture's own, in its

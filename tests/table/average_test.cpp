@@ -117,6 +117,18 @@ TEST(AverageOf, CapturesOfOneTruthDifferByTheirNoiseAndTheirLight) {
     EXPECT_NEAR(bright.cells.perFreedom(), 1, chance(bright.cells));
     EXPECT_GT(bright.scales.perFreedom(), 20);
     EXPECT_EQ(bright.scales.outliers, 2U);
+
+    // However much it changed, and though a tenth of the cells has dust on it.
+    std::vector<SampleSet> far{capture(1), capture(2, 1.2)};
+    for (std::size_t cell = 0; cell < CellGrid::count(); cell += 10)
+        far[1].leds[0].bands[0].f[cell] *= 1.5;
+    const Averaged much = averageOf(far);
+    ASSERT_EQ(much.states.size(), 2U);
+    EXPECT_NEAR(much.states[1].scale / much.states[0].scale, 1.2, 1e-3);
+    EXPECT_EQ(much.scales.outliers, 2U);
+    EXPECT_NEAR(static_cast<double>(much.cells.outliers),
+                0.2 * static_cast<double>(much.cells.freedom),
+                20);
 }
 
 TEST(AverageOf, DustIsReportedAndWidensWhatItTouches) {
