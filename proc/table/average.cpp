@@ -163,11 +163,17 @@ private:
             Present agreeing = present;
             unscale(agreeing);
             if (meanOf(agreeing.values).group.outliers > 0) continue;  // dust is no change of light
-            const double m = meanOf(present.values).mean.value;
+            std::vector<double> weights;
+            double m = 0, all = 0;
+            for (const CellValue& one : present.values) {
+                weights.push_back(1 / std::pow(std::max(one.uApart, 1e-30), 2));
+                m += weights.back() * one.value.value;
+                all += weights.back();
+            }
+            m /= all;
             for (std::size_t i = 0; i < parts.size(); ++i) {
-                const double w = 1 / std::pow(std::max(present.values[i].uApart, 1e-30), 2);
-                product[i] += w * present.values[i].value.value * m;
-                square[i] += w * m * m;
+                product[i] += weights[i] * present.values[i].value.value * m;
+                square[i] += weights[i] * m * m;
             }
         }
         for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -176,20 +182,55 @@ private:
                 return;
             }
         }
-        const auto count = static_cast<double>(parts.size());
-        ConsistencySum::Group group{.freedom = parts.size() - 1};
-        double squares = 0;
-        for (std::size_t i = 0; i < parts.size(); ++i) parts[i].scale = product[i] / square[i];
+        std::vector<double> u;
         for (std::size_t i = 0; i < parts.size(); ++i) {
-            const double u = std::hypot(1 / std::sqrt(square[i]), parts[i].light);
-            const double off = parts[i].scale - 1;
-            const double away = off / (u * std::sqrt(1 - 1 / count));
-            group.chiSquare += off * off / (u * u);
-            if (std::abs(away) > kOutlier) ++group.outliers;
-            squares += off * off;
-            result_.states.push_back({parts[i].capture, incidence, band, parts[i].scale, u, away});
+            parts[i].scale = product[i] / square[i];
+            u.push_back(std::hypot(1 / std::sqrt(square[i]), parts[i].light));
         }
-        group.relative = std::sqrt(squares / (count - 1));
+        compareScales(parts, u, apartFromMean(u, square), {incidence, band});
+    }
+
+    /// u(k_i - 1): the mean that k_i is held against holds k_i itself.
+    static std::vector<double> apartFromMean(const std::vector<double>& u,
+                                             const std::vector<double>& weights) {
+        double sum = 0, squares = 0;
+        for (const double weight : weights) sum += weight;
+        for (std::size_t i = 0; i < u.size(); ++i) squares += std::pow(weights[i] / sum * u[i], 2);
+        std::vector<double> apart;
+        for (std::size_t i = 0; i < u.size(); ++i) {
+            const double own = weights[i] / sum;
+            const double others = std::max(0.0, squares - std::pow(own * u[i], 2));
+            apart.push_back(std::sqrt(std::pow((1 - own) * u[i], 2) + others));
+        }
+        return apart;
+    }
+
+    struct State {
+        Radians incidence;
+        Band band;
+    };
+    /// Chi-square is about the k's own mean, weighted by 1 / u_i^2: whatever m they are held
+    /// against, it has n - 1 degrees of freedom.
+    void compareScales(const std::vector<Part>& parts,
+                       std::span<const double> u,
+                       const std::vector<double>& apart,
+                       const State& state) {
+        ConsistencySum::Group group{.freedom = parts.size() - 1};
+        double mean = 0, sum = 0, squares = 0;
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            mean += parts[i].scale / (u[i] * u[i]);
+            sum += 1 / (u[i] * u[i]);
+        }
+        mean /= sum;
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            const double away = (parts[i].scale - 1) / apart[i];
+            group.chiSquare += std::pow((parts[i].scale - mean) / u[i], 2);
+            if (std::abs(away) > kOutlier) ++group.outliers;
+            squares += std::pow(parts[i].scale - 1, 2);
+            result_.states.push_back(
+                {parts[i].capture, state.incidence, state.band, parts[i].scale, u[i], away});
+        }
+        group.relative = std::sqrt(squares / static_cast<double>(group.freedom));
         scales_.add(group);
     }
 

@@ -10,7 +10,11 @@
 // part of one capture in the budget's `per state` components: 1 / sqrt(2) of it where the white is
 // the same, all of it else. Cells that contradict each other though the median ratio of each
 // capture to the first is divided out have no part in it. The cells are then held against k_i m.
-// Both go into a chi-square of their own; f itself is averaged as it was measured, k_i included.
+// Both go into a chi-square of their own (that of the k_i is about their mean weighted by
+// 1 / u(k_i)^2); what k_i is from 1 is held against
+//     u(k_i - 1)^2 = (1 - W_i)^2 u(k_i)^2 + sum over j != i of W_j^2 u(k_j)^2,
+// W_i the share of sum(w m^2) that is of capture i. f itself is averaged as it was measured, k_i
+// included.
 //
 // A cell that is missing, or has no uncertainty, in some captures is the mean of the others; in
 // all, it is missing. Without a budget all of u_systematic is taken as each capture's own, in its
@@ -33,7 +37,7 @@ struct StateScale {
     Band band = Band::R;
     double scale = 1;  ///< k_i
     double u = 0;      ///< k = 1
-    /// From 1, in the standard uncertainty of that difference.
+    /// From 1, in u(k_i - 1).
     double away = 0;
 };
 

@@ -112,11 +112,21 @@ TEST(AverageOf, CapturesOfOneTruthDifferByTheirNoiseAndTheirLight) {
     EXPECT_NE(budget.find("\"median_relative\":0.005}"), std::string::npos) << budget;
 
     // Light that changed by 3 % is named, and does not count against the cells.
-    const std::vector<SampleSet> changed{capture(1), capture(2, 1.03)};
+    std::vector<SampleSet> changed{capture(1), capture(2, 1.03)};
     const Averaged bright = averageOf(changed);
     EXPECT_NEAR(bright.cells.perFreedom(), 1, chance(bright.cells));
     EXPECT_GT(bright.scales.perFreedom(), 20);
     EXPECT_EQ(bright.scales.outliers, 2U);
+
+    // The noisier of two hardly counts in the mean: both are as far from each other all the same.
+    for (double& u : changed[1].leds[0].bands[0].uRandom) u *= 10;
+    const Averaged uneven = averageOf(changed);
+    ASSERT_EQ(uneven.states.size(), 2U);
+    const double scale = uneven.states[1].scale / uneven.states[0].scale - 1;
+    const double apart = scale / std::hypot(uneven.states[0].u, uneven.states[1].u);
+    EXPECT_NEAR(uneven.states[0].away, -apart, 0.02 * apart);
+    EXPECT_NEAR(uneven.states[1].away, apart, 0.02 * apart);
+    EXPECT_NEAR(uneven.scales.chiSquare, apart * apart, 0.04 * apart * apart);
 
     // However much it changed, and though a tenth of the cells has dust on it.
     std::vector<SampleSet> far{capture(1), capture(2, 1.2)};
