@@ -90,12 +90,13 @@ Verdict repeatsVerdict(const Averaged& repeats, const QualityLimits& limits) {
         verdict.evidence = "no cell was measured twice";
         return verdict;
     }
-    const double share = static_cast<double>(found.outliers) / static_cast<double>(found.freedom);
+    const double share = static_cast<double>(found.outliers) / static_cast<double>(found.values);
     verdict.figure = Figure{.value = share, .u = {}, .unit = "1", .limit = limits.repeatOutliers};
     const bool light = repeats.scales.outliers > 0;
     verdict.grade = share > limits.repeatOutliers || light ? Grade::Warned : Grade::Ok;
-    verdict.evidence = std::to_string(found.outliers) + " values are further than " +
-                       fixed(kOutlier, 0) + " u from their mean, " + chiSquareText(found);
+    verdict.evidence = std::to_string(found.outliers) + " of " + std::to_string(found.values) +
+                       " values are further than " + fixed(kOutlier, 0) + " u from their mean, " +
+                       chiSquareText(found);
     if (light) {
         verdict.evidence +=
             "; the light of " + std::to_string(repeats.scales.outliers) + " states stands out";

@@ -60,11 +60,13 @@ TEST(SymmetryVerdicts, WarnWhereTheDifferenceIsLargeAndMoreThanChance) {
 TEST(SymmetryVerdicts, RepeatsAreJudgedByTheirOutliersAndTheirLight) {
     EXPECT_EQ(repeatsVerdict(Averaged{}).grade, Grade::NotDetermined);
     Averaged repeats;
-    repeats.cells.freedom = 100'000;
+    repeats.cells.freedom = 50'000;
+    repeats.cells.values = 100'000;
     repeats.cells.outliers = 10;
     EXPECT_EQ(repeatsVerdict(repeats).grade, Grade::Ok);
     repeats.cells.outliers = 11;
     EXPECT_EQ(repeatsVerdict(repeats).grade, Grade::Warned);
+    EXPECT_NE(repeatsVerdict(repeats).evidence.find("11 of 100000 values"), std::string::npos);
     repeats.cells.outliers = 0;
     repeats.scales.outliers = 1;
     EXPECT_EQ(repeatsVerdict(repeats).grade, Grade::Warned);

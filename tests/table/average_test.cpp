@@ -92,6 +92,7 @@ TEST(CellMean, AveragesWhatIsRandomAndKeepsWhatIsNot) {
 TEST(AverageOf, CapturesOfOneTruthDifferByTheirNoiseAndTheirLight) {
     const std::vector<SampleSet> captures{capture(1), capture(2, 1.004), capture(3, 0.999)};
     const Averaged average = averageOf(captures);
+    EXPECT_EQ(2 * average.cells.values, 3 * average.cells.freedom);
     EXPECT_NEAR(average.cells.perFreedom(), 1, chance(average.cells));
     EXPECT_GT(average.cells.probability(), 1e-4);
     ASSERT_EQ(average.states.size(), 3U);
