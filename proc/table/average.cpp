@@ -8,6 +8,7 @@
 #include "proc/optics/cell_grid.h"
 #include "proc/table/budget_shares.h"
 #include "proc/table/cell_mean.h"
+#include "proc/table/merged_info.h"
 #include "proc/table/rotations.h"
 
 namespace gonio::proc {
@@ -54,9 +55,11 @@ double medianSystematic(const CellSamples& cells) {
     return relative.empty() ? 0 : median(std::move(relative));
 }
 
+/// Merged captures of several calibrations do not say which is whose.
 bool calibratedAlike(std::span<const SampleSet> captures) {
     return std::all_of(captures.begin(), captures.end(), [&](const SampleSet& set) {
-        return set.info.calibrationId == captures.front().info.calibrationId;
+        const std::string& id = set.info.calibrationId;
+        return id == captures.front().info.calibrationId && !ofSeveral(id);
     });
 }
 

@@ -11,6 +11,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr const char* kBetween = "; ";
+
 /// Each text once, in order, without the empty ones.
 std::string joined(std::span<const SampleInfo> parts, std::string SampleInfo::*field) {
     std::vector<std::string> seen;
@@ -19,7 +21,7 @@ std::string joined(std::span<const SampleInfo> parts, std::string SampleInfo::*f
         const std::string& text = part.*field;
         if (text.empty() || std::find(seen.begin(), seen.end(), text) != seen.end()) continue;
         seen.push_back(text);
-        all += (all.empty() ? "" : "; ") + text;
+        all += (all.empty() ? "" : kBetween) + text;
     }
     return all;
 }
@@ -76,6 +78,8 @@ bool isNoise(const Json& component) {
 }
 
 }  // namespace
+
+bool ofSeveral(const std::string& text) { return text.find(kBetween) != std::string::npos; }
 
 SampleInfo mergedInfo(std::span<const SampleInfo> parts, const std::string& how) {
     SampleInfo info = parts.front();

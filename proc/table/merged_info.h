@@ -15,6 +15,9 @@ namespace gonio::proc {
 /// of a simulated sample is kept where it is the same. Verdicts are left to the caller.
 [[nodiscard]] SampleInfo mergedInfo(std::span<const SampleInfo> parts, const std::string& how);
 
+/// A text of mergedInfo that was joined of several that differ.
+[[nodiscard]] bool ofSeveral(const std::string& text);
+
 /// The budgets of sets whose tables follow one another: the states of the second come after the
 /// tables of the first. Empty where no set has one that can be read.
 [[nodiscard]] std::string joinedBudget(std::span<const SampleSet> sets);

@@ -112,6 +112,11 @@ TEST(AverageOf, CapturesOfOneTruthDifferByTheirNoiseAndTheirLight) {
     EXPECT_NE(budget.find("\"median_relative\":0.0057"), std::string::npos) << budget;
     EXPECT_NE(budget.find("\"median_relative\":0.005}"), std::string::npos) << budget;
 
+    // Of files that were merged of several calibrations nobody knows which calibration is whose.
+    std::vector<SampleSet> joint = captures;
+    for (SampleSet& set : joint) set.info.calibrationId = "1+2+3; 4+5+6";
+    EXPECT_NEAR(averageOf(joint).states[1].u, kLight, 1e-4);
+
     // Light that changed by 3 % is named, and does not count against the cells.
     std::vector<SampleSet> changed{capture(1), capture(2, 1.03)};
     const Averaged bright = averageOf(changed);
