@@ -169,7 +169,8 @@ private:
             files.push_back(one.input->file);
         }
         proc::Averaged result = proc::averageOf(sets);
-        result.set.info.budgetJson = proc::averagedBudget(sets, std::sqrt(result.weightSquares));
+        result.set.info.budgetJson =
+            proc::averagedBudget(result.set, sets, std::sqrt(result.weightSquares));
         merged_.checks.push_back({"repeats", turn.rotation, result.cells, result.scales});
         report(result, turn.rotation, files);
         found_.push_back(proc::repeatsVerdict(result, options_.limits));
@@ -200,7 +201,7 @@ private:
         merged_.sample.leds = std::move(result.set.leds);
         proc::turnTo(merged_.sample, Radians());
         merged_.sample.info.budgetJson =
-            proc::averagedBudget(parts, std::sqrt(result.weightSquares));
+            proc::averagedBudget(merged_.sample, parts, std::sqrt(result.weightSquares));
         note("isotropic");
     }
 

@@ -34,9 +34,11 @@ namespace gonio::proc {
 [[nodiscard]] std::string budgetOfChannels(const SampleSet& merged,
                                            std::span<const SampleSet> bands);
 
-/// The first set's budget after an average of captures: sizes are the medians' means over the sets
-/// that have the component in that state, and what is per cell and of type A is multiplied by
-/// `random`, the factor by which u_random fell.
-[[nodiscard]] std::string averagedBudget(std::span<const SampleSet> captures, double random);
+/// Of `average`, whose tables are the means of the captures' of the same incidence: each size is
+/// the mean over the captures that have the component in that state, and what is per cell and of
+/// type A is multiplied by `random`, the factor by which u_random fell.
+[[nodiscard]] std::string averagedBudget(const SampleSet& average,
+                                         std::span<const SampleSet> captures,
+                                         double random);
 
 }  // namespace gonio::proc

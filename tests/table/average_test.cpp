@@ -108,7 +108,8 @@ TEST(AverageOf, CapturesOfOneTruthDifferByTheirNoiseAndTheirLight) {
         EXPECT_NEAR(red(average.set).uRandom[cell], noise, 0.02 * noise);
         EXPECT_NEAR(red(average.set).uSystematic[cell], std::hypot(kCommon, kLight) * truth, 1e-12);
     }
-    const std::string budget = averagedBudget(captures, std::sqrt(average.weightSquares));
+    const std::string budget =
+        averagedBudget(average.set, captures, std::sqrt(average.weightSquares));
     EXPECT_NE(budget.find("\"median_relative\":0.0057"), std::string::npos) << budget;
     EXPECT_NE(budget.find("\"median_relative\":0.005}"), std::string::npos) << budget;
 
@@ -145,6 +146,28 @@ TEST(AverageOf, CapturesOfOneTruthDifferByTheirNoiseAndTheirLight) {
     EXPECT_NEAR(static_cast<double>(much.cells.outliers),
                 0.2 * static_cast<double>(much.cells.freedom),
                 20);
+}
+
+/// A budget names its tables by their numbers, which differ from capture to capture.
+TEST(MergedInfo, AnAveragesBudgetFollowsTheIncidences) {
+    const auto set = [](const std::vector<Radians>& incidences, const std::string& budget) {
+        SampleSet made;
+        for (const Radians one : incidences)
+            made.leds.push_back({.incidence = one, .rotation = {}, .bands = {}});
+        made.info.budgetJson = budget;
+        return made;
+    };
+    const std::vector<SampleSet> captures{
+        set({40_deg, 20_deg},
+            R"([{"led":1,"band":"r","components":[{"name":"white","median_relative":0.25}]},
+                {"led":0,"band":"r","components":[{"name":7,"median_relative":0.5}]}])"),
+        set({20_deg, 60_deg},
+            R"([{"led":0,"band":"r","components":[{"name":"white","median_relative":0.75}]},
+                {"led":1,"band":"r","components":[{"name":"white","median_relative":0.125}]}])")};
+    EXPECT_EQ(averagedBudget(set({20_deg, 40_deg, 60_deg}, ""), captures, 1),
+              R"([{"led":0,"band":"r","components":[{"name":"white","median_relative":0.5}]},)"
+              R"({"led":1,"band":"r","components":[{"name":7,"median_relative":0.5}]},)"
+              R"({"led":2,"band":"r","components":[{"name":"white","median_relative":0.125}]}])");
 }
 
 TEST(AverageOf, DustIsReportedAndWidensWhatItTouches) {
