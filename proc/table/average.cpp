@@ -14,6 +14,10 @@
 namespace gonio::proc {
 namespace {
 
+/// Of the cells. Where more contradict each other, what is common to the rest is no light: of a
+/// sample that one rotation shows brighter on one side and darker on the other, half agree.
+constexpr double kMostContradicting = 1.0 / 3;
+
 /// One state as one capture has it.
 struct Part {
     std::size_t capture = 0;
@@ -160,12 +164,17 @@ private:
         if (parts.size() < 2) return;
         roughScales(parts);
         std::vector<double> product(parts.size()), square(parts.size());
+        std::size_t compared = 0, contradicting = 0;
         for (std::size_t cell = 0; cell < CellGrid::count(); ++cell) {
             const Present present = presentIn(parts, cell);
             if (present.values.size() < parts.size()) continue;
+            ++compared;
             Present agreeing = present;
             unscale(agreeing);
-            if (meanOf(agreeing.values).group.outliers > 0) continue;  // dust is no change of light
+            if (meanOf(agreeing.values).group.outliers > 0) {
+                ++contradicting;  // dust is no change of light
+                continue;
+            }
             std::vector<double> weights;
             double m = 0, all = 0;
             for (const CellValue& one : present.values) {
@@ -179,11 +188,13 @@ private:
                 square[i] += weights[i] * m * m;
             }
         }
-        for (std::size_t i = 0; i < parts.size(); ++i) {
-            if (!(square[i] > 0) || !(product[i] > 0)) {
-                for (Part& part : parts) part.scale = 1;
-                return;
-            }
+        const auto isPositive = [](double x) { return x > 0; };
+        if (static_cast<double>(contradicting) >
+                kMostContradicting * static_cast<double>(compared) ||
+            !std::all_of(square.begin(), square.end(), isPositive) ||
+            !std::all_of(product.begin(), product.end(), isPositive)) {
+            for (Part& part : parts) part.scale = 1;
+            return;
         }
         std::vector<double> u;
         for (std::size_t i = 0; i < parts.size(); ++i) {

@@ -9,7 +9,8 @@
 // is how much brighter capture i is than the mean, with u(k_i)^2 = 1 / sum(w m^2) + s^2 and s the
 // part of one capture in the budget's `per state` components: 1 / sqrt(2) of it where the white is
 // the same, all of it else. Cells that contradict each other though the median ratio of each
-// capture to the first is divided out have no part in it. The cells are then held against k_i m.
+// capture to the first is divided out have no part in it; where more than a third of them do, no
+// light is told apart. The cells are then held against k_i m.
 // Both go into a chi-square of their own (that of the k_i is about their mean weighted by
 // 1 / u(k_i)^2); what k_i is from 1 is held against
 //     u(k_i - 1)^2 = (1 - W_i)^2 u(k_i)^2 + sum over j != i of W_j^2 u(k_j)^2,
