@@ -97,6 +97,7 @@ public:
         for (Turn& turn : turns) parts.push_back(averaged(turn));
         merged_.how = howOf(turns);
         join(parts);
+        judgeBefore();
         if (options_.isotropic) overRotations(parts);
         if (options_.plane) overPlane();
         if (options_.reciprocal) overReciprocals();
@@ -205,8 +206,15 @@ private:
         note("isotropic");
     }
 
+    /// By each rotation: a mean of rotations that contradict each other has an uncertainty that
+    /// hides how its sides differ.
+    void judgeBefore() {
+        if (options_.plane) found_.push_back(proc::planeVerdict(merged_.sample, options_.limits));
+        if (options_.reciprocal)
+            found_.push_back(proc::reciprocityVerdict(merged_.sample, options_.limits));
+    }
+
     void overPlane() {
-        found_.push_back(proc::planeVerdict(merged_.sample, options_.limits));
         proc::Symmetrical result = proc::planeSymmetrical(std::move(merged_.sample));
         merged_.sample = std::move(result.set);
         merged_.checks.push_back({"plane", {}, result.consistency, {}});
@@ -214,7 +222,6 @@ private:
     }
 
     void overReciprocals() {
-        found_.push_back(proc::reciprocityVerdict(merged_.sample, options_.limits));
         proc::Reciprocal result = proc::reciprocalAverage(std::move(merged_.sample));
         merged_.sample = std::move(result.set);
         merged_.checks.push_back({"reciprocity", {}, result.consistency, {}});
