@@ -85,6 +85,14 @@ TEST(Merging, WorksOutFromTheRotationsWhatIsAsked) {
     EXPECT_EQ(isotropic->sample.info.extra.at("averaged"), "isotropic,plane,reciprocal");
     const double u = isotropic->sample.leds[0].bands[0].uRandom[5000];
     EXPECT_LT(u, 0.45 * whole.sample->leds[1].bands[0].uRandom[5000]);  // 4 rotations, 2 sides
+
+    // The two sides are one value by now: no average makes it better, and what was done stays.
+    MergeInput sides{.file = "sides", .sample = isotropic->sample, .values = {}, .band = {}};
+    expectRefused({sides}, {.plane = true}, {"'sides'", "averaged by --plane already"});
+    sides.sample->info.extra["averaged"] = "plane";
+    const Result<Merged> more = merged({sides}, {.reciprocal = true});
+    ASSERT_TRUE(more) << more.error().message;
+    EXPECT_EQ(more->sample.info.extra.at("averaged"), "plane,reciprocal");
 }
 
 /// After an average all agree: what was found before it is what the sample is judged by.
@@ -142,6 +150,17 @@ TEST(Merging, ThreeBandsFindTheirPartnersAndEstimateWhatOneLacks) {
     EXPECT_GT(cells.uRandom[9000], 0);
     EXPECT_EQ(cells.f[9001], bands[2].sample->leds[0].bands[1].f[9001]);
     EXPECT_TRUE(proc::encodeGonio(done->sample));
+
+    // They are held to what any files are, and judged by all three whatever is averaged.
+    std::vector<proc::Verdict> drifted{
+        {.name = "drift", .grade = proc::Grade::Warned, .figure = {}, .evidence = {}, .next = {}}};
+    bands[2].sample->info.qcVerdicts = proc::verdictsText(drifted);
+    const Result<Merged> sides = merged(bands, {.plane = true});
+    ASSERT_TRUE(sides) << sides.error().message;
+    EXPECT_EQ(gradeOf(*sides, "drift"), proc::Grade::Warned);
+    bands[2].sample->info.rigSerial = "R2";
+    expectRefused(bands, {}, {"R1", "R2", "--any-calibration"});
+    EXPECT_TRUE(merged(bands, {.anyCalibration = true}));
 }
 
 TEST(Merging, ScatteredBandsMeetAtTheirPairs) {
