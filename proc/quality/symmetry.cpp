@@ -44,8 +44,8 @@ Verdict planeVerdict(const SampleSet& sample, const QualityLimits& limits) {
         verdict.evidence = "no cell was measured on both sides of the plane of incidence";
         return verdict;
     }
-    verdict.evidence = "the two sides of the plane of incidence differ by " +
-                       amount(found.medianRelative, "1") + " in the median, " +
+    verdict.evidence = "the two sides of the plane of incidence are " +
+                       amount(found.medianRelative, "1") + " rms from their mean in the median, " +
                        chiSquareText(found);
     if (verdict.grade == Grade::Warned) {
         verdict.next =
@@ -62,8 +62,8 @@ Verdict isotropyVerdict(const Averaged& rotations, const QualityLimits& limits) 
         verdict.evidence = "no two rotations measured the same cell";
         return verdict;
     }
-    verdict.evidence = "rotations differ by " + amount(found.medianRelative, "1") +
-                       " in the median, " + chiSquareText(found);
+    verdict.evidence = "rotations are " + amount(found.medianRelative, "1") +
+                       " rms from their mean in the median, " + chiSquareText(found);
     if (verdict.grade == Grade::Warned) {
         verdict.evidence = "not isotropic: " + verdict.evidence;
         verdict.next = "keep its rotations apart: merge without --isotropic";

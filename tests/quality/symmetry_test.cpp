@@ -41,6 +41,7 @@ TEST(SymmetryVerdicts, WarnWhereTheDifferenceIsLargeAndMoreThanChance) {
     const Verdict large = planeVerdict(skewed(0.04));
     EXPECT_EQ(large.grade, Grade::Warned) << described(large);
     EXPECT_NEAR(large.figure->value, 0.04 / std::sqrt(2.0), 1e-3);
+    EXPECT_NE(large.evidence.find("rms from their mean"), std::string::npos) << large.evidence;
     EXPECT_FALSE(large.next.empty());
     EXPECT_EQ(planeVerdict(skewed(0.0282)).grade, Grade::Ok);      // chi-square 3.98, 1.99 %
     EXPECT_EQ(planeVerdict(skewed(0.0286)).grade, Grade::Warned);  // 4.09, 2.02 %
