@@ -43,10 +43,9 @@ Result<Merged> mergedScattered(const std::array<const MergeInput*, 3>& bands,
     std::array<const proc::ScatteredSet*, 3> sets{};
     for (std::size_t b = 0; b < 3; ++b) {
         if (bands[b]->sample) {
-            return mergeError(
-                quoted(*bands[b]) +
-                " is a .gonio, another is not: merge three .gonio, or convert it to "
-                "Zemax first");
+            return mergeError(quoted(*bands[b]) +
+                              " is a .gonio, another is not: merge three .gonio, or convert it to "
+                              "Zemax first");
         }
         sets[b] = &*bands[b]->values;
     }

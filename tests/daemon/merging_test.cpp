@@ -171,8 +171,8 @@ TEST(Merging, ScatteredBandsMeetAtTheirPairs) {
     ASSERT_TRUE(proc::writeFile(folder / "paint_G.csv",
                                 "theta_i,phi_i,theta_o,phi_o,f,flags\n"
                                 "20,0,30,180,0.75,1\n20,0,60,10,0.125,5\n20,0,32,180,9,3\n"));
-    ASSERT_TRUE(
-        proc::writeFile(folder / "paint-Blue.csv", head + "20,0,30,180,1\n20,0,32,180,2\n"));
+    ASSERT_TRUE(proc::writeFile(folder / "paint-Blue.csv",
+                                head + "20,0,30,180,1\n20,0,32,180,2\n20,0,30.0625,180,1.5\n"));
     const auto inputs = readMergeInputs({(folder / "paint_G.csv").string(),
                                          (folder / "paint-Blue.csv").string(),
                                          (folder / "paint_R.csv").string()},
@@ -180,12 +180,15 @@ TEST(Merging, ScatteredBandsMeetAtTheirPairs) {
     ASSERT_TRUE(inputs) << inputs.error().message;
     const Result<Merged> done = merged(*inputs, {});
     ASSERT_TRUE(done) << done.error().message;
-    // 32 degrees: green was saturated, and is estimated from 30; 60 degrees: only green was there.
+    // 32 degrees: green was saturated, and is estimated from 30; 60 degrees: only green was there;
+    // blue measured twice near 30 degrees.
     EXPECT_EQ(channelCsv(done->rows),
               "theta_i,phi_i,theta_o,phi_o,f_r,f_g,f_b,flags_r,flags_g,flags_b\n"
               "20,0,30,180,0.5,0.75,1,1,1,1\n"
               "20,0,32,180,-0.25,0.75,2,1,64,1\n"
-              "20,0,60,10,,0.125,,0,5,0\n");
+              "20,0,60,10,,0.125,,0,5,0\n"
+              "20,0,30.0625,180,0.5,0.75,1.5,1,1,1\n");
+    EXPECT_EQ((*done->channels)[2].partners, 3U);
     ASSERT_TRUE(proc::writeFile(folder / "paint.csv", head + "20,0,30,180,0.5\n"));
     const auto unnamed = readMergeInputs({(folder / "paint.csv").string()}, {});
     ASSERT_FALSE(unnamed);
