@@ -7,25 +7,13 @@
 #include "proc/core/median.h"
 #include "proc/optics/cell_grid.h"
 #include "proc/table/budget_shares.h"
+#include "proc/table/capture_light.h"
 #include "proc/table/cell_mean.h"
 #include "proc/table/merged_info.h"
 #include "proc/table/rotations.h"
 
 namespace gonio::proc {
 namespace {
-
-/// Of the cells. Where more contradict each other, what is common to the rest is no light: of a
-/// sample that one rotation shows brighter on one side and darker on the other, half agree.
-constexpr double kMostContradicting = 1.0 / 3;
-
-/// One state as one capture has it.
-struct Part {
-    std::size_t capture = 0;
-    const CellSamples* cells = nullptr;
-    double shared = 0;  ///< relative part of u_systematic that the captures share
-    double light = 0;   ///< relative part of one capture's light
-    double scale = 1;
-};
 
 std::optional<std::size_t> tableAt(const SampleSet& set, Radians incidence) {
     for (std::size_t i = 0; i < set.leds.size(); ++i) {
@@ -72,7 +60,6 @@ public:
     explicit Averaging(std::span<const SampleSet> captures)
         : captures_(captures), alike_(calibratedAlike(captures)) {
         for (const SampleSet& set : captures) shares_.push_back(budgetShares(set));
-        result_.outliersOf.resize(captures.size());
     }
 
     Averaged run() {
@@ -95,8 +82,8 @@ public:
     }
 
 private:
-    std::vector<Part> partsOf(Radians incidence, Band band) const {
-        std::vector<Part> parts;
+    std::vector<CapturePart> partsOf(Radians incidence, Band band) const {
+        std::vector<CapturePart> parts;
         for (std::size_t c = 0; c < captures_.size(); ++c) {
             const auto table = tableAt(captures_[c], incidence);
             if (!table) continue;
@@ -115,155 +102,28 @@ private:
         return parts;
     }
 
-    /// The values of a cell that are there, and whose they are.
-    struct Present {
-        std::vector<CellValue> values;
-        std::vector<const Part*> parts;
-    };
-    static Present presentIn(const std::vector<Part>& parts, std::size_t cell) {
-        Present present;
-        for (const Part& part : parts) {
-            if (!canAverage(*part.cells, cell)) continue;
-            const Measured<double> value = part.cells->at(cell);
-            present.values.push_back({value, apartFrom(value, part.shared)});
-            present.parts.push_back(&part);
-        }
-        return present;
-    }
-
-    /// In the median over the cells that all parts have: how much brighter each is than the first.
-    /// What a speck of dust does not reach, however much the light changed.
-    static void roughScales(std::vector<Part>& parts) {
-        std::vector<std::vector<double>> ratios(parts.size());
-        for (std::size_t cell = 0; cell < CellGrid::count(); ++cell) {
-            const Present present = presentIn(parts, cell);
-            if (present.values.size() < parts.size()) continue;
-            const double first = present.values.front().value.value;
-            if (!(first > 0)) continue;
-            for (std::size_t i = 0; i < parts.size(); ++i)
-                ratios[i].push_back(present.values[i].value.value / first);
-        }
-        for (std::size_t i = 0; i < parts.size(); ++i) {
-            const double scale = ratios[i].empty() ? 1 : median(std::move(ratios[i]));
-            parts[i].scale = scale > 0 ? scale : 1;
-        }
-    }
-
-    /// Over each part's scale.
-    static void unscale(Present& present) {
-        for (std::size_t i = 0; i < present.values.size(); ++i) {
-            const double scale = present.parts[i]->scale;
-            present.values[i].value.value /= scale;
-            present.values[i].value.uRandom /= scale;
-            present.values[i].uApart /= scale;
-        }
-    }
-
-    /// k_i of each part, from the cells that all of them have and agree on but for the light.
-    void findScales(std::vector<Part>& parts, Radians incidence, Band band) {
-        if (parts.size() < 2) return;
-        roughScales(parts);
-        std::vector<double> product(parts.size()), square(parts.size());
-        std::size_t compared = 0, contradicting = 0;
-        for (std::size_t cell = 0; cell < CellGrid::count(); ++cell) {
-            const Present present = presentIn(parts, cell);
-            if (present.values.size() < parts.size()) continue;
-            ++compared;
-            Present agreeing = present;
-            unscale(agreeing);
-            if (meanOf(agreeing.values).group.outliers > 0) {
-                ++contradicting;  // dust is no change of light
-                continue;
-            }
-            std::vector<double> weights;
-            double m = 0, all = 0;
-            for (const CellValue& one : present.values) {
-                weights.push_back(1 / std::pow(std::max(one.uApart, 1e-30), 2));
-                m += weights.back() * one.value.value;
-                all += weights.back();
-            }
-            m /= all;
-            for (std::size_t i = 0; i < parts.size(); ++i) {
-                product[i] += weights[i] * present.values[i].value.value * m;
-                square[i] += weights[i] * m * m;
-            }
-        }
-        const auto isPositive = [](double x) { return x > 0; };
-        if (static_cast<double>(contradicting) >
-                kMostContradicting * static_cast<double>(compared) ||
-            !std::all_of(square.begin(), square.end(), isPositive) ||
-            !std::all_of(product.begin(), product.end(), isPositive)) {
-            for (Part& part : parts) part.scale = 1;
-            return;
-        }
-        std::vector<double> u;
-        for (std::size_t i = 0; i < parts.size(); ++i) {
-            parts[i].scale = product[i] / square[i];
-            u.push_back(std::hypot(1 / std::sqrt(square[i]), parts[i].light));
-        }
-        compareScales(parts, u, apartFromMean(u, square), {incidence, band});
-    }
-
-    /// u(k_i - 1): the mean that k_i is held against holds k_i itself.
-    static std::vector<double> apartFromMean(const std::vector<double>& u,
-                                             const std::vector<double>& weights) {
-        double sum = 0, squares = 0;
-        for (const double weight : weights) sum += weight;
-        for (std::size_t i = 0; i < u.size(); ++i) squares += std::pow(weights[i] / sum * u[i], 2);
-        std::vector<double> apart;
-        for (std::size_t i = 0; i < u.size(); ++i) {
-            const double own = weights[i] / sum;
-            const double others = std::max(0.0, squares - std::pow(own * u[i], 2));
-            apart.push_back(std::sqrt(std::pow((1 - own) * u[i], 2) + others));
-        }
-        return apart;
-    }
-
-    struct State {
-        Radians incidence;
-        Band band;
-    };
-    /// Chi-square is about the k's own mean, weighted by 1 / u_i^2: whatever m they are held
-    /// against, it has n - 1 degrees of freedom.
-    void compareScales(const std::vector<Part>& parts,
-                       std::span<const double> u,
-                       const std::vector<double>& apart,
-                       const State& state) {
-        ConsistencySum::Group group{.freedom = parts.size() - 1};
-        double mean = 0, sum = 0, squares = 0;
-        for (std::size_t i = 0; i < parts.size(); ++i) {
-            mean += parts[i].scale / (u[i] * u[i]);
-            sum += 1 / (u[i] * u[i]);
-        }
-        mean /= sum;
-        for (std::size_t i = 0; i < parts.size(); ++i) {
-            const double away = (parts[i].scale - 1) / apart[i];
-            group.chiSquare += std::pow((parts[i].scale - mean) / u[i], 2);
-            if (std::abs(away) > kOutlier) ++group.outliers;
-            squares += std::pow(parts[i].scale - 1, 2);
-            result_.states.push_back(
-                {parts[i].capture, state.incidence, state.band, parts[i].scale, u[i], away});
-        }
-        group.relative = std::sqrt(squares / static_cast<double>(group.freedom));
-        scales_.add(group);
-    }
-
     CellSamples meanState(Radians incidence, Band band) {
-        std::vector<Part> parts = partsOf(incidence, band);
+        std::vector<CapturePart> parts = partsOf(incidence, band);
         if (parts.empty()) return {};
-        findScales(parts, incidence, band);
+        const CaptureLight light = lightOf(parts);
+        scales_.add(light.group);
+        for (std::size_t i = 0; i < light.scale.size(); ++i) {
+            parts[i].scale = light.scale[i];
+            result_.states.push_back(
+                {parts[i].capture, incidence, band, light.scale[i], light.u[i], light.away[i]});
+        }
         CellSamples mean = CellSamples::missing(CellGrid::count());
         for (std::size_t cell = 0; cell < mean.size(); ++cell) {
-            for (const Part& part : parts) {
+            for (const CapturePart& part : parts) {
                 mean.flags[cell] = mean.flags[cell] | part.cells->flags[cell];
                 mean.flags[cell].clear(Flag::Measured);
                 if (canAverage(*part.cells, cell)) mean.nEff[cell] += part.cells->nEff[cell];
             }
-            Present present = presentIn(parts, cell);
+            PresentValues present = presentIn(parts, cell);
             if (present.values.empty()) continue;
             const CellMean measured = meanOf(present.values);
             put(mean, cell, measured.mean);
-            judge(present, {incidence, band, cell}, mean);
+            judge(std::move(present), {incidence, band, cell}, mean);
         }
         return mean;
     }
@@ -282,16 +142,15 @@ private:
     };
     /// Without what the light of each capture explains. Where the values still contradict each
     /// other, the mean's u_random is what they agree to.
-    void judge(Present& present, const Place& place, CellSamples& mean) {
+    void judge(PresentValues present, const Place& place, CellSamples& mean) {
         if (present.values.size() < 2) return;
-        unscale(present);
+        present = withoutLight(std::move(present));
         const CellMean same = meanOf(present.values);
         cells_.add(same.group);
         const double middle = same.mean.value;
         for (std::size_t i = 0; i < same.away.size(); ++i) {
             if (std::abs(same.away[i]) <= kOutlier) continue;
-            const std::size_t capture = present.parts[i]->capture;
-            ++result_.outliersOf[capture];
+            const std::size_t capture = present.captures[i];
             result_.outliers.push_back({capture,
                                         place.incidence,
                                         place.band,

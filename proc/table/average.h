@@ -55,10 +55,9 @@ struct Outlier {
 struct Averaged {
     SampleSet set;  ///< at the first capture's rotation, with its information
     Consistency cells, scales;
-    std::vector<StateScale> states;       ///< of each capture and state that others have, too
-    std::vector<Outlier> outliers;        ///< the furthest first
-    std::vector<std::size_t> outliersOf;  ///< by capture
-    double weightSquares = 1;  ///< median over cells of sum w_i^2: what u_random^2 became
+    std::vector<StateScale> states;  ///< of each capture and state that others have, too
+    std::vector<Outlier> outliers;   ///< the furthest first
+    double weightSquares = 1;        ///< median over cells of sum w_i^2: what u_random^2 became
 };
 
 /// At least one capture; tables are matched by incidence, to half a degree.

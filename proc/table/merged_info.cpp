@@ -100,6 +100,21 @@ Json meanState(std::span<const Json> states, double random) {
     return mean;
 }
 
+/// Of the tables `kept` of a set, numbered anew in that order.
+std::string budgetOfTables(const std::string& budgetJson, std::span<const std::size_t> kept) {
+    const Json states = statesOf(budgetJson);
+    Json all = Json::array();
+    for (std::size_t to = 0; to < kept.size(); ++to) {
+        for (const Json& state : states) {
+            if (state["led"].get<std::size_t>() != kept[to]) continue;
+            Json moved = state;
+            moved["led"] = to;
+            all.push_back(std::move(moved));
+        }
+    }
+    return textOf(all);
+}
+
 }  // namespace
 
 bool ofSeveral(const std::string& text) { return text.find(kBetween) != std::string::npos; }
@@ -147,20 +162,6 @@ std::string joinedBudget(std::span<const SampleSet> sets) {
             all.push_back(std::move(state));
         }
         tables += set.leds.size();
-    }
-    return textOf(all);
-}
-
-std::string budgetOfTables(const std::string& budgetJson, std::span<const std::size_t> kept) {
-    const Json states = statesOf(budgetJson);
-    Json all = Json::array();
-    for (std::size_t to = 0; to < kept.size(); ++to) {
-        for (const Json& state : states) {
-            if (state["led"].get<std::size_t>() != kept[to]) continue;
-            Json moved = state;
-            moved["led"] = to;
-            all.push_back(std::move(moved));
-        }
     }
     return textOf(all);
 }

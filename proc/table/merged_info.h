@@ -25,10 +25,6 @@ namespace gonio::proc {
 /// The set's tables of one rotation, with the budget that is theirs.
 [[nodiscard]] SampleSet tablesAt(const SampleSet& set, Radians rotation);
 
-/// The budget of the tables `kept` of a set, numbered anew in that order.
-[[nodiscard]] std::string budgetOfTables(const std::string& budgetJson,
-                                         std::span<const std::size_t> kept);
-
 /// Of a set whose tables were put together from sets of one band each: the states of each, where
 /// their tables (by incidence and rotation) went.
 [[nodiscard]] std::string budgetOfChannels(const SampleSet& merged,

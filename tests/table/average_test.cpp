@@ -175,7 +175,6 @@ TEST(AverageOf, DustIsReportedAndWidensWhatItTouches) {
     CellSamples& dusty = captures[1].leds[0].bands[0];
     for (std::size_t cell = 5000; cell < 5030; ++cell) dusty.f[cell] *= 1.3;
     const Averaged average = averageOf(captures);
-    EXPECT_EQ(average.outliersOf, (std::vector<std::size_t>{0, 30, 0}));
     ASSERT_EQ(average.outliers.size(), 30U);
     for (const Outlier& one : average.outliers) {
         EXPECT_EQ(one.capture, 1U);
