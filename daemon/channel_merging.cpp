@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "daemon/merge_checks.h"
 #include "daemon/merge_verdicts.h"
 #include "proc/core/number_text.h"
 #include "proc/formats/file_degrees.h"
@@ -12,25 +13,22 @@
 namespace gonio::daemon {
 namespace {
 
-Error usage(const std::string& what) { return {ErrorKind::Usage, "merge: " + what}; }
-
-std::string quoted(const MergeInput& input) { return "'" + input.file + "'"; }
-
 std::string degrees(Radians angle) { return shortest(proc::fileDegrees(angle)); }
 
 /// R, G, B of three inputs; a Usage error where they are not that.
 Result<std::array<const MergeInput*, 3>> bandsOf(const std::vector<MergeInput>& inputs) {
     std::array<const MergeInput*, 3> bands{};
     if (inputs.size() != 3) {
-        return usage("three files of one band each make one of three; here are " +
-                     std::to_string(inputs.size()));
+        return mergeError("three files of one band each make one of three; here are " +
+                          std::to_string(inputs.size()));
     }
     for (const MergeInput& input : inputs) {
-        if (!input.band) return usage(quoted(input) + ": it holds more than one band");
+        if (!input.band) return mergeError(quoted(input) + ": it holds more than one band");
         const MergeInput*& place = bands[index(*input.band)];
         if (place != nullptr) {
-            return usage(quoted(*place) + " and " + quoted(input) + " are both of band " +
-                         std::string(letter(*input.band)) + "; one of each of r, g, b is wanted");
+            return mergeError(quoted(*place) + " and " + quoted(input) + " are both of band " +
+                              std::string(letter(*input.band)) +
+                              "; one of each of r, g, b is wanted");
         }
         place = &input;
     }
@@ -40,13 +38,14 @@ Result<std::array<const MergeInput*, 3>> bandsOf(const std::vector<MergeInput>& 
 Result<Merged> mergedScattered(const std::array<const MergeInput*, 3>& bands,
                                const MergeOptions& options) {
     if (options.plane || options.isotropic || options.reciprocal) {
-        return usage("--plane, --isotropic and --reciprocal are for .gonio files");
+        return mergeError("--plane, --isotropic and --reciprocal are for .gonio files");
     }
     std::array<const proc::ScatteredSet*, 3> sets{};
     for (std::size_t b = 0; b < 3; ++b) {
         if (bands[b]->sample) {
-            return usage(quoted(*bands[b]) +
-                         " is a .gonio, another is not; convert it to CSV or Zemax first");
+            return mergeError(quoted(*bands[b]) +
+                              " is a .gonio, another is not: merge three .gonio, or convert it to "
+                              "Zemax first");
         }
         sets[b] = &*bands[b]->values;
     }
@@ -58,8 +57,9 @@ Result<Merged> mergedScattered(const std::array<const MergeInput*, 3>& bands,
 }
 
 /// Of samples: the cells of one file, whatever averages are asked for follow.
-Result<std::vector<MergeInput>> mergedSamples(const std::array<const MergeInput*, 3>& bands,
-                                              Merged& into) {
+std::vector<MergeInput> mergedSamples(std::span<const MergeInput> inputs,
+                                      const std::array<const MergeInput*, 3>& bands,
+                                      Merged& into) {
     std::array<const proc::SampleSet*, 3> sets{};
     std::vector<proc::SampleInfo> infos;
     std::vector<proc::SampleSet> all;
@@ -72,7 +72,11 @@ Result<std::vector<MergeInput>> mergedSamples(const std::array<const MergeInput*
     into.channels = made.counts;
     made.set.info = proc::mergedInfo(infos, "channels");
     made.set.info.budgetJson = proc::budgetOfChannels(made.set, all);
-    return std::vector<MergeInput>{{.file = bands[0]->file, .sample = std::move(made.set)}};
+    const std::string averages = averagesOf(inputs);
+    if (!averages.empty()) made.set.info.extra["averaged"] = averages;
+    std::vector<MergeInput> one;
+    one.push_back({.file = bands[0]->file, .sample = std::move(made.set)});
+    return one;
 }
 
 }  // namespace
@@ -84,17 +88,18 @@ Result<Merged> mergedBands(const std::vector<MergeInput>& inputs, const MergeOpt
         return !one.sample.has_value();
     });
     if (scattered) return mergedScattered(*bands, options);
+    if (Result<void> good = checkOrigins(inputs, options); !good) return good.error();
+    if (Result<void> good = checkAverages(inputs, options); !good) return good.error();
     Merged whole{.how = "channels"};
-    auto one = mergedSamples(*bands, whole);
-    if (!one) return one.error();
+    std::vector<MergeInput> one = mergedSamples(inputs, *bands, whole);
     if (options.plane || options.isotropic || options.reciprocal) {
-        Result<Merged> averaged = mergedAlike(*one, options);
+        Result<Merged> averaged = mergedAlike(one, options, inputs);
         if (!averaged) return averaged;
         averaged->how = whole.how;
         averaged->channels = whole.channels;
         return averaged;
     }
-    whole.sample = std::move(*one->front().sample);
+    whole.sample = std::move(*one.front().sample);
     whole.sample.info.achievedUncertainty = proc::achievedUncertainty(whole.sample);
     judge(whole, inputs, {}, options.limits);
     return whole;

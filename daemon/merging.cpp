@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "daemon/channel_merging.h"
+#include "daemon/merge_checks.h"
 #include "daemon/merge_verdicts.h"
 #include "proc/core/number_text.h"
 #include "proc/formats/file_degrees.h"
@@ -17,10 +18,6 @@
 
 namespace gonio::daemon {
 namespace {
-
-Error usage(const std::string& what) { return {ErrorKind::Usage, "merge: " + what}; }
-
-std::string quoted(const MergeInput& input) { return "'" + input.file + "'"; }
 
 std::string degrees(Radians rotation) { return shortest(proc::fileDegrees(rotation)); }
 
@@ -54,41 +51,17 @@ std::vector<Turn> turnsOf(const std::vector<MergeInput>& inputs) {
     return turns;
 }
 
-/// Measurements of one piece by one laboratory: what differs has to be meant.
-Result<void> checkAlike(const std::vector<MergeInput>& inputs, const MergeOptions& options) {
-    const proc::SampleInfo& first = inputs.front().sample->info;
-    for (const MergeInput& input : inputs) {
-        const proc::SampleInfo& info = input.sample->info;
-        const std::string both = quoted(inputs.front()) + " and " + quoted(input) + ": ";
-        if (info.truthSpec != first.truthSpec) {
-            return usage(both + "under the simulated rig lay '" + first.truthSpec + "' and '" +
-                         info.truthSpec + "', which are not one sample; leave one out");
-        }
-        if (input.band != inputs.front().band) {
-            return usage(both +
-                         "they do not hold the same bands; three files of one band each, of "
-                         "R, G and B, become one");
-        }
-        if (options.anyCalibration) continue;
-        const bool rig = info.rigSerial != first.rigSerial;
-        if (rig || info.referenceCertificate != first.referenceCertificate) {
-            return usage(both +
-                         (rig ? "measured on the rigs " + first.rigSerial + " and " + info.rigSerial
-                              : "calibrated by other references") +
-                         ", whose systematic errors differ; to merge them all the same: "
-                         "--any-calibration");
-        }
-    }
-    return {};
-}
-
 class SampleMerge {
 public:
-    SampleMerge(const std::vector<MergeInput>& inputs, const MergeOptions& options)
-        : inputs_(inputs), options_(options) {}
+    SampleMerge(const std::vector<MergeInput>& inputs,
+                const MergeOptions& options,
+                std::span<const MergeInput> judged)
+        : inputs_(inputs), options_(options), judged_(judged), averages_(averagesOf(inputs)) {}
 
     Result<Merged> run() {
-        if (Result<void> good = checkAlike(inputs_, options_); !good) return good.error();
+        if (Result<void> good = checkBands(inputs_); !good) return good.error();
+        if (Result<void> good = checkOrigins(inputs_, options_); !good) return good.error();
+        if (Result<void> good = checkAverages(inputs_, options_); !good) return good.error();
         std::vector<Turn> turns = turnsOf(inputs_);
         if (Result<void> good = checkAsked(turns); !good) return good.error();
         noteCalibrations();
@@ -97,12 +70,13 @@ public:
         for (Turn& turn : turns) parts.push_back(averaged(turn));
         merged_.how = howOf(turns);
         join(parts);
+        judgeBefore();
         if (options_.isotropic) overRotations(parts);
         if (options_.plane) overPlane();
         if (options_.reciprocal) overReciprocals();
         if (!averages_.empty()) merged_.sample.info.extra["averaged"] = averages_;
         merged_.sample.info.achievedUncertainty = proc::achievedUncertainty(merged_.sample);
-        judge(merged_, inputs_, found_, options_.limits);
+        judge(merged_, judged_, found_, options_.limits);
         std::stable_sort(merged_.outliers.begin(),
                          merged_.outliers.end(),
                          [](const FileOutlier& a, const FileOutlier& b) {
@@ -115,13 +89,14 @@ private:
     Result<void> checkAsked(const std::vector<Turn>& turns) const {
         const bool asked = options_.plane || options_.isotropic || options_.reciprocal;
         if (inputs_.size() == 1 && !asked) {
-            return usage(quoted(inputs_.front()) +
-                         ": one sample is nothing to merge; name another, or ask for --plane, "
-                         "--isotropic or --reciprocal");
+            return mergeError(quoted(inputs_.front()) +
+                              ": one sample is nothing to merge; name another, or ask for --plane, "
+                              "--isotropic or --reciprocal");
         }
         if (options_.isotropic && turns.size() == 1) {
-            return usage("--isotropic: all are of rotation " + degrees(turns.front().rotation) +
-                         " degrees; measure others with --rotation");
+            return mergeError("--isotropic: all are of rotation " +
+                              degrees(turns.front().rotation) +
+                              " degrees; measure others with --rotation");
         }
         return {};
     }
@@ -169,7 +144,8 @@ private:
             files.push_back(one.input->file);
         }
         proc::Averaged result = proc::averageOf(sets);
-        result.set.info.budgetJson = proc::averagedBudget(sets, std::sqrt(result.weightSquares));
+        result.set.info.budgetJson =
+            proc::averagedBudget(result.set, sets, std::sqrt(result.weightSquares));
         merged_.checks.push_back({"repeats", turn.rotation, result.cells, result.scales});
         report(result, turn.rotation, files);
         found_.push_back(proc::repeatsVerdict(result, options_.limits));
@@ -200,12 +176,19 @@ private:
         merged_.sample.leds = std::move(result.set.leds);
         proc::turnTo(merged_.sample, Radians());
         merged_.sample.info.budgetJson =
-            proc::averagedBudget(parts, std::sqrt(result.weightSquares));
+            proc::averagedBudget(merged_.sample, parts, std::sqrt(result.weightSquares));
         note("isotropic");
     }
 
+    /// By each rotation: a mean of rotations that contradict each other has an uncertainty that
+    /// hides how its sides differ.
+    void judgeBefore() {
+        if (options_.plane) found_.push_back(proc::planeVerdict(merged_.sample, options_.limits));
+        if (options_.reciprocal)
+            found_.push_back(proc::reciprocityVerdict(merged_.sample, options_.limits));
+    }
+
     void overPlane() {
-        found_.push_back(proc::planeVerdict(merged_.sample, options_.limits));
         proc::Symmetrical result = proc::planeSymmetrical(std::move(merged_.sample));
         merged_.sample = std::move(result.set);
         merged_.checks.push_back({"plane", {}, result.consistency, {}});
@@ -213,7 +196,6 @@ private:
     }
 
     void overReciprocals() {
-        found_.push_back(proc::reciprocityVerdict(merged_.sample, options_.limits));
         proc::Reciprocal result = proc::reciprocalAverage(std::move(merged_.sample));
         merged_.sample = std::move(result.set);
         merged_.checks.push_back({"reciprocity", {}, result.consistency, {}});
@@ -227,6 +209,7 @@ private:
 
     const std::vector<MergeInput>& inputs_;
     const MergeOptions& options_;
+    std::span<const MergeInput> judged_;
     std::string averages_;
     std::vector<proc::Verdict> found_;  ///< on what was averaged
     Merged merged_;
@@ -234,8 +217,10 @@ private:
 
 }  // namespace
 
-Result<Merged> mergedAlike(const std::vector<MergeInput>& inputs, const MergeOptions& options) {
-    return SampleMerge(inputs, options).run();
+Result<Merged> mergedAlike(const std::vector<MergeInput>& inputs,
+                           const MergeOptions& options,
+                           std::span<const MergeInput> judged) {
+    return SampleMerge(inputs, options, judged).run();
 }
 
 Result<Merged> merged(const std::vector<MergeInput>& inputs, const MergeOptions& options) {
@@ -248,7 +233,7 @@ Result<Merged> merged(const std::vector<MergeInput>& inputs, const MergeOptions&
         return one.band == inputs.front().band;
     });
     if (scattered || (oneBand && !sameBand)) return mergedBands(inputs, options);
-    return mergedAlike(inputs, options);
+    return mergedAlike(inputs, options, inputs);
 }
 
 }  // namespace gonio::daemon

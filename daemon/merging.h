@@ -6,6 +6,7 @@
 // docs/merging.md has the equations.
 
 #include <array>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -60,8 +61,9 @@ struct Merged {
 [[nodiscard]] Result<Merged> merged(const std::vector<MergeInput>& inputs,
                                     const MergeOptions& options);
 
-/// The same of samples that hold the same bands.
+/// The same of samples that hold the same bands; `judged`: the files whose verdicts count.
 [[nodiscard]] Result<Merged> mergedAlike(const std::vector<MergeInput>& inputs,
-                                         const MergeOptions& options);
+                                         const MergeOptions& options,
+                                         std::span<const MergeInput> judged);
 
 }  // namespace gonio::daemon

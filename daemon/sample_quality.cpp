@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "proc/core/log.h"
+#include "proc/core/number_text.h"
+#include "proc/formats/file_degrees.h"
 #include "proc/quality/ambient.h"
 #include "proc/quality/energy.h"
 #include "proc/quality/reciprocity.h"
@@ -10,6 +12,7 @@
 #include "proc/quality/saturation.h"
 #include "proc/quality/symmetry.h"
 #include "proc/quality/verdict.h"
+#include "proc/table/rotations.h"
 
 namespace gonio::daemon {
 namespace {
@@ -128,6 +131,20 @@ Result<void> checkOther(const BackingEvidence& evidence) {
         return Error{ErrorKind::Usage,
                      "sample '" + name + "' lay on a " + std::string(proc::name(*theirs)) +
                          " backing; to hold one against it wants the other, with --backing"};
+    }
+    const std::vector<Radians> rotations = proc::rotationsOf(*evidence.other);
+    const bool alike = std::any_of(rotations.begin(), rotations.end(), [&](Radians one) {
+        return proc::sameRotation(one, evidence.rotation);
+    });
+    if (!alike) {
+        const auto degrees = [](Radians angle) { return shortest(proc::fileDegrees(angle)); };
+        const std::string at = rotations.empty() ? "" : degrees(rotations.front());
+        return Error{ErrorKind::Usage,
+                     rotations.empty()
+                         ? "sample '" + name + "' has no LED; measure it anew with --backing"
+                         : "sample '" + name + "' was measured at rotation " + at +
+                               " degrees, not " + degrees(evidence.rotation) +
+                               "; to hold one against it, measure with --rotation " + at};
     }
     return {};
 }

@@ -27,8 +27,10 @@ void judgeCapture(proc::SampleSet& sample,
 struct BackingEvidence {
     std::optional<proc::Backing> backing;
     std::optional<proc::SampleSet> other;
+    Radians rotation{};  ///< of what is measured
 };
-/// Usage error where `other` does not say that it lay on the other backing than `backing`.
+/// Usage error where `other` does not say that it lay on the other backing than `backing`, or has
+/// another rotation.
 [[nodiscard]] Result<void> checkOther(const BackingEvidence& evidence);
 /// Translucency; the backing is kept in `info.extra`.
 void judgeBacking(proc::SampleSet& sample,

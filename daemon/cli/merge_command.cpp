@@ -108,7 +108,7 @@ std::vector<std::vector<std::string>> checkRows(const Merged& merged) {
                                                 "chi-square per degree",
                                                 "degrees",
                                                 "probability",
-                                                "median difference",
+                                                "median from mean",
                                                 "outliers"}};
     const auto add = [&](const std::string& name, const proc::Consistency& found) {
         const bool any = found.freedom > 0;

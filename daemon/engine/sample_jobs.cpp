@@ -79,7 +79,8 @@ Result<SampleRecord> keep(const JobRun& run,
 
 /// Looked for before the rig is asked for anything.
 Result<BackingEvidence> backingEvidence(const JobRun& run) {
-    BackingEvidence evidence{.backing = run.request().backing, .other = {}};
+    BackingEvidence evidence{
+        .backing = run.request().backing, .other = {}, .rotation = run.request().rotation};
     if (run.request().against.empty()) return evidence;
     const Result<SampleRecord> record = run.bench().store.sample(run.request().against);
     if (!record) return record.error();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "proc/estimate/sheet.h"
 #include "proc/estimate/shepard.h"
@@ -115,21 +116,32 @@ public:
         return channel;
     }
 
-    [[nodiscard]] const ScatteredSample* partner(const LightView& pair) const {
+    [[nodiscard]] std::optional<SampleId> partner(const LightView& pair) const {
         const auto near =
             set_.nearest(pair, {.count = 1, .maxDistance = 2 * std::sin(kPartner.value() / 2)});
-        return near.empty() ? nullptr : set_.find(near.front().id);
+        if (near.empty()) return std::nullopt;
+        return near.front().id;
     }
 
-    void put(ChannelRow& row, std::size_t band, ChannelCount& count) const {
-        if (const ScatteredSample* const one = partner(row.pair)) {
-            ++count.partners;
-            row.f[band] = one->f[Band::R];
-            row.flags[band] = one->flags;
-            if (one->uRandom || one->uSystematic) {
-                row.u[band] = std::hypot(one->uRandom ? (*one->uRandom)[Band::R] : 0,
-                                         one->uSystematic ? (*one->uSystematic)[Band::R] : 0);
-            }
+    /// Whether the value stands in a row.
+    [[nodiscard]] bool isUsed(SampleId id) const { return used_.count(id) > 0; }
+
+    void take(SampleId id, ChannelRow& row, std::size_t band, ChannelCount& count) {
+        const ScatteredSample* const one = set_.find(id);
+        used_.insert(id);
+        ++count.partners;
+        row.f[band] = one->f[Band::R];
+        row.flags[band] = one->flags;
+        if (one->uRandom || one->uSystematic) {
+            row.u[band] = std::hypot(one->uRandom ? (*one->uRandom)[Band::R] : 0,
+                                     one->uSystematic ? (*one->uSystematic)[Band::R] : 0);
+        }
+    }
+
+    /// What the set has near the row's pair, estimated where it has nothing.
+    void put(ChannelRow& row, std::size_t band, ChannelCount& count) {
+        if (const std::optional<SampleId> id = partner(row.pair)) {
+            take(*id, row, band, count);
             return;
         }
         const Answer answer = estimate_->answer(row.pair);
@@ -147,6 +159,7 @@ public:
 private:
     const ScatteredSet& set_;
     std::unique_ptr<Scatterer> estimate_;
+    std::set<SampleId> used_;
 };
 
 }  // namespace
@@ -172,14 +185,17 @@ Result<MergedScattered> mergedChannels(const std::array<const ScatteredSet*, 3>&
     MergedScattered merged;
     for (std::size_t b = 0; b < 3; ++b) {
         for (const SampleId id : bands[b]->ids()) {
+            // Two values of one band may be near one of another: each has a row.
+            if (channels[b].isUsed(id)) continue;
             const LightView& pair = bands[b]->find(id)->pair;
-            bool known = false;
-            for (std::size_t before = 0; before < b; ++before) {
-                known = known || channels[before].partner(pair) != nullptr;
-            }
-            if (known) continue;
             ChannelRow row{.pair = pair, .f = {kNan, kNan, kNan}, .u = {kNan, kNan, kNan}};
-            for (std::size_t i = 0; i < 3; ++i) channels[i].put(row, i, merged.counts[i]);
+            for (std::size_t i = 0; i < 3; ++i) {
+                if (i == b) {
+                    channels[i].take(id, row, i, merged.counts[i]);
+                } else {
+                    channels[i].put(row, i, merged.counts[i]);
+                }
+            }
             merged.rows.push_back(row);
         }
     }

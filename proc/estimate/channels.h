@@ -23,7 +23,7 @@ namespace gonio::proc {
 
 /// What became of a band's values.
 struct ChannelCount {
-    std::size_t partners = 0;   ///< as they were measured
+    std::size_t partners = 0;   ///< as they were measured; once for each row that they are in
     std::size_t estimated = 0;  ///< where another band has a value
     std::size_t missing = 0;
 };
@@ -43,7 +43,8 @@ struct ChannelRow {
     std::array<Flags, 3> flags{};
 };
 struct MergedScattered {
-    std::vector<ChannelRow> rows;  ///< R's pairs, then what only G and B have
+    /// R's pairs, then of G and B what is nobody's partner: each value stands in a row.
+    std::vector<ChannelRow> rows;
     std::array<ChannelCount, 3> counts;
 };
 /// R, G, B, each of BandCount::One. A Usage error where their symmetries differ.

@@ -44,8 +44,8 @@ Verdict planeVerdict(const SampleSet& sample, const QualityLimits& limits) {
         verdict.evidence = "no cell was measured on both sides of the plane of incidence";
         return verdict;
     }
-    verdict.evidence = "the two sides of the plane of incidence differ by " +
-                       amount(found.medianRelative, "1") + " in the median, " +
+    verdict.evidence = "the two sides of the plane of incidence are " +
+                       amount(found.medianRelative, "1") + " rms from their mean in the median, " +
                        chiSquareText(found);
     if (verdict.grade == Grade::Warned) {
         verdict.next =
@@ -62,8 +62,8 @@ Verdict isotropyVerdict(const Averaged& rotations, const QualityLimits& limits) 
         verdict.evidence = "no two rotations measured the same cell";
         return verdict;
     }
-    verdict.evidence = "rotations differ by " + amount(found.medianRelative, "1") +
-                       " in the median, " + chiSquareText(found);
+    verdict.evidence = "rotations are " + amount(found.medianRelative, "1") +
+                       " rms from their mean in the median, " + chiSquareText(found);
     if (verdict.grade == Grade::Warned) {
         verdict.evidence = "not isotropic: " + verdict.evidence;
         verdict.next = "keep its rotations apart: merge without --isotropic";
@@ -90,12 +90,13 @@ Verdict repeatsVerdict(const Averaged& repeats, const QualityLimits& limits) {
         verdict.evidence = "no cell was measured twice";
         return verdict;
     }
-    const double share = static_cast<double>(found.outliers) / static_cast<double>(found.freedom);
+    const double share = static_cast<double>(found.outliers) / static_cast<double>(found.values);
     verdict.figure = Figure{.value = share, .u = {}, .unit = "1", .limit = limits.repeatOutliers};
     const bool light = repeats.scales.outliers > 0;
     verdict.grade = share > limits.repeatOutliers || light ? Grade::Warned : Grade::Ok;
-    verdict.evidence = std::to_string(found.outliers) + " values are further than " +
-                       fixed(kOutlier, 0) + " u from their mean, " + chiSquareText(found);
+    verdict.evidence = std::to_string(found.outliers) + " of " + std::to_string(found.values) +
+                       " values are further than " + fixed(kOutlier, 0) + " u from their mean, " +
+                       chiSquareText(found);
     if (light) {
         verdict.evidence +=
             "; the light of " + std::to_string(repeats.scales.outliers) + " states stands out";

@@ -4,11 +4,12 @@
 #include <cmath>
 
 #include "proc/optics/cell_grid.h"
+#include "proc/table/rotations.h"
 
 namespace gonio::proc {
 namespace {
 
-constexpr Radians kSameIncidence = 0.5_deg, kOutermost = 60_deg, kFromMirror = 30_deg;
+constexpr Radians kOutermost = 60_deg, kFromMirror = 30_deg;
 
 bool diffuse(const Direction& wo, Radians incidence) {
     const Direction mirror = Direction::fromSpherical(incidence, Radians(kPi));
@@ -43,8 +44,7 @@ Sums sumsOf(const BackingPair& pair, Band band) {
     Sums sums;
     for (const LedTable& black : pair.black.leds) {
         for (const LedTable& white : pair.white.leds) {
-            const double apart = std::abs(black.incidence.value() - white.incidence.value());
-            if (apart < kSameIncidence.value()) addLed(sums, black, white, band);
+            if (sameLight(black, white)) addLed(sums, black, white, band);
         }
     }
     return sums;

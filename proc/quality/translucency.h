@@ -35,7 +35,7 @@ struct BackingDifference {
     LedBands reflectance;  ///< white minus black
     LedBands u;
 };
-/// Empty where the two have no LED and no cell in common.
+/// Empty where the two have no LED, at one rotation, and no cell in common.
 [[nodiscard]] std::optional<BackingDifference> backingDifference(const BackingPair& pair);
 
 /// `translucency` of a sample that was measured on `backing`, if that is known: warned of on black,

@@ -7,20 +7,13 @@
 #include "proc/core/median.h"
 #include "proc/optics/cell_grid.h"
 #include "proc/table/budget_shares.h"
+#include "proc/table/capture_light.h"
 #include "proc/table/cell_mean.h"
+#include "proc/table/merged_info.h"
 #include "proc/table/rotations.h"
 
 namespace gonio::proc {
 namespace {
-
-/// One state as one capture has it.
-struct Part {
-    std::size_t capture = 0;
-    const CellSamples* cells = nullptr;
-    double shared = 0;  ///< relative part of u_systematic that the captures share
-    double light = 0;   ///< relative part of one capture's light
-    double scale = 1;
-};
 
 std::optional<std::size_t> tableAt(const SampleSet& set, Radians incidence) {
     for (std::size_t i = 0; i < set.leds.size(); ++i) {
@@ -54,9 +47,11 @@ double medianSystematic(const CellSamples& cells) {
     return relative.empty() ? 0 : median(std::move(relative));
 }
 
+/// Merged captures of several calibrations do not say which is whose.
 bool calibratedAlike(std::span<const SampleSet> captures) {
     return std::all_of(captures.begin(), captures.end(), [&](const SampleSet& set) {
-        return set.info.calibrationId == captures.front().info.calibrationId;
+        const std::string& id = set.info.calibrationId;
+        return id == captures.front().info.calibrationId && !ofSeveral(id);
     });
 }
 
@@ -65,7 +60,6 @@ public:
     explicit Averaging(std::span<const SampleSet> captures)
         : captures_(captures), alike_(calibratedAlike(captures)) {
         for (const SampleSet& set : captures) shares_.push_back(budgetShares(set));
-        result_.outliersOf.resize(captures.size());
     }
 
     Averaged run() {
@@ -88,8 +82,8 @@ public:
     }
 
 private:
-    std::vector<Part> partsOf(Radians incidence, Band band) const {
-        std::vector<Part> parts;
+    std::vector<CapturePart> partsOf(Radians incidence, Band band) const {
+        std::vector<CapturePart> parts;
         for (std::size_t c = 0; c < captures_.size(); ++c) {
             const auto table = tableAt(captures_[c], incidence);
             if (!table) continue;
@@ -108,74 +102,28 @@ private:
         return parts;
     }
 
-    /// The values of a cell that are there, and whose they are.
-    struct Present {
-        std::vector<CellValue> values;
-        std::vector<const Part*> parts;
-    };
-    static Present presentIn(const std::vector<Part>& parts, std::size_t cell) {
-        Present present;
-        for (const Part& part : parts) {
-            if (!canAverage(*part.cells, cell)) continue;
-            const Measured<double> value = part.cells->at(cell);
-            present.values.push_back({value, apartFrom(value, part.shared)});
-            present.parts.push_back(&part);
-        }
-        return present;
-    }
-
-    /// k_i of each part, from the cells that all of them have.
-    void findScales(std::vector<Part>& parts, Radians incidence, Band band) {
-        if (parts.size() < 2) return;
-        std::vector<double> product(parts.size()), square(parts.size());
-        for (std::size_t cell = 0; cell < CellGrid::count(); ++cell) {
-            const Present present = presentIn(parts, cell);
-            if (present.values.size() < parts.size()) continue;
-            const CellMean mean = meanOf(present.values);
-            if (mean.group.outliers > 0) continue;  // a speck of dust is no change of the light
-            const double m = mean.mean.value;
-            for (std::size_t i = 0; i < parts.size(); ++i) {
-                const double w = 1 / std::pow(std::max(present.values[i].uApart, 1e-30), 2);
-                product[i] += w * present.values[i].value.value * m;
-                square[i] += w * m * m;
-            }
-        }
-        const auto count = static_cast<double>(parts.size());
-        ConsistencySum::Group group{.freedom = parts.size() - 1};
-        double squares = 0;
-        for (std::size_t i = 0; i < parts.size(); ++i) {
-            if (!(square[i] > 0)) return;
-            parts[i].scale = product[i] / square[i];
-        }
-        for (std::size_t i = 0; i < parts.size(); ++i) {
-            const double u = std::hypot(1 / std::sqrt(square[i]), parts[i].light);
-            const double off = parts[i].scale - 1;
-            const double away = off / (u * std::sqrt(1 - 1 / count));
-            group.chiSquare += off * off / (u * u);
-            if (std::abs(away) > kOutlier) ++group.outliers;
-            squares += off * off;
-            result_.states.push_back({parts[i].capture, incidence, band, parts[i].scale, u, away});
-        }
-        group.relative = std::sqrt(squares / (count - 1));
-        scales_.add(group);
-    }
-
     CellSamples meanState(Radians incidence, Band band) {
-        std::vector<Part> parts = partsOf(incidence, band);
+        std::vector<CapturePart> parts = partsOf(incidence, band);
         if (parts.empty()) return {};
-        findScales(parts, incidence, band);
+        const CaptureLight light = lightOf(parts);
+        scales_.add(light.group);
+        for (std::size_t i = 0; i < light.scale.size(); ++i) {
+            parts[i].scale = light.scale[i];
+            result_.states.push_back(
+                {parts[i].capture, incidence, band, light.scale[i], light.u[i], light.away[i]});
+        }
         CellSamples mean = CellSamples::missing(CellGrid::count());
         for (std::size_t cell = 0; cell < mean.size(); ++cell) {
-            for (const Part& part : parts) {
+            for (const CapturePart& part : parts) {
                 mean.flags[cell] = mean.flags[cell] | part.cells->flags[cell];
                 mean.flags[cell].clear(Flag::Measured);
                 if (canAverage(*part.cells, cell)) mean.nEff[cell] += part.cells->nEff[cell];
             }
-            Present present = presentIn(parts, cell);
+            PresentValues present = presentIn(parts, cell);
             if (present.values.empty()) continue;
             const CellMean measured = meanOf(present.values);
             put(mean, cell, measured.mean);
-            judge(present, {incidence, band, cell}, mean);
+            judge(std::move(present), {incidence, band, cell}, mean);
         }
         return mean;
     }
@@ -194,22 +142,15 @@ private:
     };
     /// Without what the light of each capture explains. Where the values still contradict each
     /// other, the mean's u_random is what they agree to.
-    void judge(Present& present, const Place& place, CellSamples& mean) {
+    void judge(PresentValues present, const Place& place, CellSamples& mean) {
         if (present.values.size() < 2) return;
-        for (std::size_t i = 0; i < present.values.size(); ++i) {
-            Measured<double>& value = present.values[i].value;
-            const double scale = present.parts[i]->scale;
-            value.value /= scale;
-            value.uRandom /= scale;
-            present.values[i].uApart /= scale;
-        }
+        present = withoutLight(std::move(present));
         const CellMean same = meanOf(present.values);
         cells_.add(same.group);
         const double middle = same.mean.value;
         for (std::size_t i = 0; i < same.away.size(); ++i) {
             if (std::abs(same.away[i]) <= kOutlier) continue;
-            const std::size_t capture = present.parts[i]->capture;
-            ++result_.outliersOf[capture];
+            const std::size_t capture = present.captures[i];
             result_.outliers.push_back({capture,
                                         place.incidence,
                                         place.band,
@@ -217,7 +158,7 @@ private:
                                         same.away[i],
                                         present.values[i].value.value / middle - 1});
         }
-        mean.uRandom[place.cell] *= same.widening();
+        mean.uRandom[place.cell] = std::max(mean.uRandom[place.cell], same.uAgreed);
         if (same.group.outliers > 0) return;
         double squares = 0;
         for (const CellValue& one : present.values) squares += std::pow(one.value.uRandom, 2);

@@ -55,24 +55,23 @@ CellMean meanOf(std::span<const CellValue> values) {
     ConsistencySum::Group& group = result.group;
     group.freedom = values.size() - 1;
     result.away.clear();
-    double squares = 0;
+    double squares = 0, known = 0;
     for (std::size_t i = 0; i < values.size(); ++i) {
         const double off = values[i].value.value - mean.value;
         const double inU = off / atLeastRounding(values[i]);
         group.chiSquare += inU * inU;
         squares += off * off;
+        known += 1 / (atLeastRounding(values[i]) * atLeastRounding(values[i]));
         result.away.push_back(inU / std::sqrt(std::max(1 - weights[i], 1e-9)));
         if (std::abs(result.away.back()) > kOutlier) ++group.outliers;
     }
     const auto freedom = static_cast<double>(group.freedom);
     group.relative = std::sqrt(squares / freedom) / std::abs(mean.value);
+    if (group.outliers > 0) result.uAgreed = std::sqrt(group.chiSquare / freedom / known);
     return result;
 }
 
-double CellMean::widening() const {
-    if (group.outliers == 0) return 1;
-    return std::sqrt(std::max(1.0, group.chiSquare / static_cast<double>(group.freedom)));
-}
+double CellMean::uRandom() const { return std::max(mean.uRandom, uAgreed); }
 
 double apartFrom(const Measured<double>& value, double shared) {
     const double common = shared * value.value;

@@ -9,7 +9,8 @@
 // Of three and more values one that is further than kOutlier u_apart from their median is weighed
 // down by kOutlier over that distance [Huber1964]; none is dropped. Where one of the values is so
 // far from the mean, the values contradict their uncertainties, and the mean is no better than they
-// agree: `widening` says by how much u_random has to grow [Birge1932].
+// agree [Birge1932]: u_random is then at least
+//     u_agreed = sqrt(chi^2 / (n - 1)) / sqrt(sum 1 / u_apart,i^2).
 //
 // Negative values are values. One value is its own mean, to the bit. An uncertainty below the
 // rounding of a float is taken as that.
@@ -37,8 +38,10 @@ struct CellMean {
     /// u_apart,i sqrt(1 - w_i).
     std::vector<double> away;
 
-    /// sqrt(chi^2 / degrees of freedom), at least 1; 1 where no value is an outlier.
-    [[nodiscard]] double widening() const;
+    double uAgreed = 0;  ///< 0 where no value is an outlier
+
+    /// The mean's, and no less than u_agreed.
+    [[nodiscard]] double uRandom() const;
 };
 
 /// A cell that can be averaged: present, with a value and uncertainties.

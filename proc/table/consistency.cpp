@@ -20,6 +20,7 @@ void ConsistencySum::add(const Group& group) {
     if (group.freedom == 0) return;
     sum_.chiSquare += group.chiSquare;
     sum_.freedom += group.freedom;
+    sum_.values += group.freedom + 1;
     sum_.outliers += group.outliers;
     if (std::isfinite(group.relative)) relative_.push_back(group.relative);
 }

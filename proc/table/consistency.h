@@ -18,6 +18,7 @@ inline constexpr double kOutlier = 5;
 struct Consistency {
     double chiSquare = 0;
     std::size_t freedom = 0;
+    std::size_t values = 0;  ///< in groups of two and more
     /// Median over the groups of the values' root mean square deviation from m, relative to m.
     double medianRelative = std::numeric_limits<double>::quiet_NaN();
     std::size_t outliers = 0;  ///< values further than kOutlier from their group's mean

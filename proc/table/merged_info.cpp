@@ -11,6 +11,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr const char* kBetween = "; ";
+
 /// Each text once, in order, without the empty ones.
 std::string joined(std::span<const SampleInfo> parts, std::string SampleInfo::*field) {
     std::vector<std::string> seen;
@@ -19,7 +21,7 @@ std::string joined(std::span<const SampleInfo> parts, std::string SampleInfo::*f
         const std::string& text = part.*field;
         if (text.empty() || std::find(seen.begin(), seen.end(), text) != seen.end()) continue;
         seen.push_back(text);
-        all += (all.empty() ? "" : "; ") + text;
+        all += (all.empty() ? "" : kBetween) + text;
     }
     return all;
 }
@@ -57,25 +59,65 @@ Json statesOf(const std::string& budgetJson) {
 
 std::string textOf(const Json& states) { return states.empty() ? "" : dumped(states); }
 
-/// The component of this name in the same state of another budget.
-const Json* sameComponent(const Json& states, const Json& state, const Json& component) {
-    for (const Json& other : states) {
-        if (other["led"] != state["led"] || other["band"] != state["band"]) continue;
-        const auto components = other.find("components");
-        if (components == other.end() || !components->is_array()) return nullptr;
-        for (const Json& one : *components) {
-            if (one.is_object() && one.value("name", "") == component.value("name", ""))
-                return &one;
-        }
+/// Empty where there is no text of that name.
+std::string textIn(const Json& object, const char* key) {
+    const auto found = object.find(key);
+    return found != object.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+bool isNoise(const Json& component) {
+    return textIn(component, "correlation") == "per cell" && textIn(component, "type") == "A";
+}
+
+/// The component of this name and a size.
+const Json* sizedComponent(const Json& state, const std::string& name) {
+    const auto components = state.find("components");
+    if (components == state.end() || !components->is_array()) return nullptr;
+    for (const Json& one : *components) {
+        if (!one.is_object() || textIn(one, "name") != name) continue;
+        const auto size = one.find("median_relative");
+        return size != one.end() && size->is_number() ? &one : nullptr;
     }
     return nullptr;
 }
 
-bool isNoise(const Json& component) {
-    return component.value("correlation", "") == "per cell" && component.value("type", "") == "A";
+/// The first with its components' sizes at their means over all that have them.
+Json meanState(std::span<const Json> states, double random) {
+    Json mean = states.front();
+    const auto components = mean.find("components");
+    if (components == mean.end() || !components->is_array()) return mean;
+    for (Json& one : *components) {
+        if (!one.is_object()) continue;
+        double sum = 0, count = 0;
+        for (const Json& state : states) {
+            const Json* const same = sizedComponent(state, textIn(one, "name"));
+            if (same == nullptr) continue;
+            sum += (*same)["median_relative"].get<double>();
+            ++count;
+        }
+        if (count > 0) one["median_relative"] = sum / count * (isNoise(one) ? random : 1);
+    }
+    return mean;
+}
+
+/// Of the tables `kept` of a set, numbered anew in that order.
+std::string budgetOfTables(const std::string& budgetJson, std::span<const std::size_t> kept) {
+    const Json states = statesOf(budgetJson);
+    Json all = Json::array();
+    for (std::size_t to = 0; to < kept.size(); ++to) {
+        for (const Json& state : states) {
+            if (state["led"].get<std::size_t>() != kept[to]) continue;
+            Json moved = state;
+            moved["led"] = to;
+            all.push_back(std::move(moved));
+        }
+    }
+    return textOf(all);
 }
 
 }  // namespace
+
+bool ofSeveral(const std::string& text) { return text.find(kBetween) != std::string::npos; }
 
 SampleInfo mergedInfo(std::span<const SampleInfo> parts, const std::string& how) {
     SampleInfo info = parts.front();
@@ -124,20 +166,6 @@ std::string joinedBudget(std::span<const SampleSet> sets) {
     return textOf(all);
 }
 
-std::string budgetOfTables(const std::string& budgetJson, std::span<const std::size_t> kept) {
-    const Json states = statesOf(budgetJson);
-    Json all = Json::array();
-    for (std::size_t to = 0; to < kept.size(); ++to) {
-        for (const Json& state : states) {
-            if (state["led"].get<std::size_t>() != kept[to]) continue;
-            Json moved = state;
-            moved["led"] = to;
-            all.push_back(std::move(moved));
-        }
-    }
-    return textOf(all);
-}
-
 SampleSet tablesAt(const SampleSet& set, Radians rotation) {
     std::vector<std::size_t> kept;
     for (std::size_t i = 0; i < set.leds.size(); ++i) {
@@ -164,30 +192,30 @@ std::string budgetOfChannels(const SampleSet& merged, std::span<const SampleSet>
     return textOf(all);
 }
 
-std::string averagedBudget(std::span<const SampleSet> captures, double random) {
-    Json states = statesOf(captures.front().info.budgetJson);
-    std::vector<Json> others;
-    for (const SampleSet& set : captures.subspan(1))
-        others.push_back(statesOf(set.info.budgetJson));
-    for (Json& state : states) {
-        const auto components = state.find("components");
-        if (components == state.end() || !components->is_array()) continue;
-        for (Json& one : *components) {
-            if (!one.is_object() || !one.contains("median_relative") ||
-                !one["median_relative"].is_number())
-                continue;
-            double sum = one["median_relative"].get<double>(), count = 1;
-            for (const Json& other : others) {
-                const Json* const same = sameComponent(other, state, one);
-                if (same == nullptr || !same->contains("median_relative")) continue;
-                if (!(*same)["median_relative"].is_number()) continue;
-                sum += (*same)["median_relative"].get<double>();
-                count += 1;
+std::string averagedBudget(const SampleSet& average,
+                           std::span<const SampleSet> captures,
+                           double random) {
+    std::vector<Json> budgets;
+    for (const SampleSet& set : captures) budgets.push_back(statesOf(set.info.budgetJson));
+    Json all = Json::array();
+    for (std::size_t to = 0; to < average.leds.size(); ++to) {
+        for (const Band band : kBands) {
+            std::vector<Json> states;
+            for (std::size_t c = 0; c < captures.size(); ++c) {
+                for (const Json& state : budgets[c]) {
+                    const auto from = state["led"].get<std::size_t>();
+                    if (from >= captures[c].leds.size() || state["band"] != letter(band)) continue;
+                    const Radians incidence = captures[c].leds[from].incidence;
+                    if (!sameIncidence(incidence, average.leds[to].incidence)) continue;
+                    states.push_back(state);
+                }
             }
-            one["median_relative"] = sum / count * (isNoise(one) ? random : 1);
+            if (states.empty()) continue;
+            all.push_back(meanState(states, random));
+            all.back()["led"] = to;
         }
     }
-    return textOf(states);
+    return textOf(all);
 }
 
 }  // namespace gonio::proc

@@ -45,7 +45,7 @@ Symmetrical planeSymmetrical(SampleSet set) {
                             const double n = before.nEff[cell] + before.nEff[image];
                             for (const std::size_t at : {cell, image}) {
                                 cells.f[at] = mean.mean.value;
-                                cells.uRandom[at] = mean.mean.uRandom * mean.widening();
+                                cells.uRandom[at] = mean.uRandom();
                                 cells.uSystematic[at] = mean.mean.uSystematic;
                                 cells.flags[at] = mean.mean.flags;
                                 cells.nEff[at] = n;

@@ -2,12 +2,14 @@
 
 #include <array>
 #include <cmath>
+#include <map>
 #include <optional>
 
 #include "proc/optics/cell_blend.h"
 #include "proc/optics/cell_grid.h"
 #include "proc/table/budget_shares.h"
 #include "proc/table/cell_mean.h"
+#include "proc/table/rotations.h"
 
 namespace gonio::proc {
 namespace {
@@ -32,23 +34,54 @@ std::optional<Sight> sightOf(const CellSamples& cells, const Direction& wo, doub
     return Sight{*cell, {value, apartFrom(value, shared)}};
 }
 
-void move(CellSamples& cells, const Sight& sight, const CellMean& mean) {
-    cells.f[sight.cell] += mean.mean.value - sight.value.value.value;
-    cells.uRandom[sight.cell] = mean.mean.uRandom * mean.widening();
-    cells.uSystematic[sight.cell] = mean.mean.uSystematic;
-    cells.flags[sight.cell].set(Flag::Reciprocity);
-}
+/// LED, band, cell.
+using Place = std::array<std::size_t, 3>;
+
+/// For each cell its own value, then what each partner makes of it. Whatever the number of
+/// partners, a cell moves once, to the mean of all.
+class Gathered {
+public:
+    explicit Gathered(const std::vector<LedTable>& leds) : leds_(leds) {}
+
+    /// `partner` is of the direction that `own` is of; the cell would move by their difference.
+    void add(const Place& place, const Sight& own, CellValue partner) {
+        const double f = leds_[place[0]].bands[place[1]].f[place[2]];
+        std::vector<CellValue>& values = values_[place];
+        if (values.empty()) {
+            values.push_back(own.value);
+            values.back().value.value = f;
+        }
+        partner.value.value += f - own.value.value.value;
+        values.push_back(partner);
+    }
+
+    void moveCells(std::vector<LedTable>& leds) const {
+        for (const auto& [place, values] : values_) {
+            CellSamples& cells = leds[place[0]].bands[place[1]];
+            const CellMean mean = meanOf(values);
+            cells.f[place[2]] = mean.mean.value;
+            cells.uRandom[place[2]] = mean.uRandom();
+            cells.uSystematic[place[2]] = mean.mean.uSystematic;
+            cells.flags[place[2]].set(Flag::Reciprocity);
+        }
+    }
+
+private:
+    const std::vector<LedTable>& leds_;
+    std::map<Place, std::vector<CellValue>> values_;
+};
 
 }  // namespace
 
 Reciprocal reciprocalAverage(SampleSet set) {
     const BudgetShares shares = budgetShares(set);
     const std::vector<LedTable> before = set.leds;
+    Gathered gathered(before);
     ConsistencySum sum;
     std::size_t pairs = 0;
     for (std::size_t a = 0; a < before.size(); ++a) {
         for (std::size_t b = a + 1; b < before.size(); ++b) {
-            if (before[a].incidence == before[b].incidence) continue;
+            if (sameLight(before[a], before[b])) continue;
             const Radians apart = before[a].rotation - before[b].rotation;
             const auto toB = Direction::fromSpherical(before[b].incidence, apart);
             const auto toA = Direction::fromSpherical(before[a].incidence, -apart);
@@ -57,14 +90,14 @@ Reciprocal reciprocalAverage(SampleSet set) {
                 const auto back = sightOf(before[b].bands[band], toA, shares[b][band].common);
                 if (!there || !back) continue;
                 const std::array<CellValue, 2> values{there->value, back->value};
-                const CellMean mean = meanOf(values);
-                sum.add(mean.group);
+                sum.add(meanOf(values).group);
                 ++pairs;
-                move(set.leds[a].bands[band], *there, mean);
-                move(set.leds[b].bands[band], *back, mean);
+                gathered.add({a, band, there->cell}, *there, back->value);
+                gathered.add({b, band, back->cell}, *back, there->value);
             }
         }
     }
+    gathered.moveCells(set.leds);
     return {std::move(set), sum.result(), pairs};
 }
 

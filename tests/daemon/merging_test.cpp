@@ -85,6 +85,14 @@ TEST(Merging, WorksOutFromTheRotationsWhatIsAsked) {
     EXPECT_EQ(isotropic->sample.info.extra.at("averaged"), "isotropic,plane,reciprocal");
     const double u = isotropic->sample.leds[0].bands[0].uRandom[5000];
     EXPECT_LT(u, 0.45 * whole.sample->leds[1].bands[0].uRandom[5000]);  // 4 rotations, 2 sides
+
+    // The two sides are one value by now: no average makes it better, and what was done stays.
+    MergeInput sides{.file = "sides", .sample = isotropic->sample, .values = {}, .band = {}};
+    expectRefused({sides}, {.plane = true}, {"'sides'", "averaged by --plane already"});
+    sides.sample->info.extra["averaged"] = "plane";
+    const Result<Merged> more = merged({sides}, {.reciprocal = true});
+    ASSERT_TRUE(more) << more.error().message;
+    EXPECT_EQ(more->sample.info.extra.at("averaged"), "plane,reciprocal");
 }
 
 /// After an average all agree: what was found before it is what the sample is judged by.
@@ -142,6 +150,17 @@ TEST(Merging, ThreeBandsFindTheirPartnersAndEstimateWhatOneLacks) {
     EXPECT_GT(cells.uRandom[9000], 0);
     EXPECT_EQ(cells.f[9001], bands[2].sample->leds[0].bands[1].f[9001]);
     EXPECT_TRUE(proc::encodeGonio(done->sample));
+
+    // They are held to what any files are, and judged by all three whatever is averaged.
+    std::vector<proc::Verdict> drifted{
+        {.name = "drift", .grade = proc::Grade::Warned, .figure = {}, .evidence = {}, .next = {}}};
+    bands[2].sample->info.qcVerdicts = proc::verdictsText(drifted);
+    const Result<Merged> sides = merged(bands, {.plane = true});
+    ASSERT_TRUE(sides) << sides.error().message;
+    EXPECT_EQ(gradeOf(*sides, "drift"), proc::Grade::Warned);
+    bands[2].sample->info.rigSerial = "R2";
+    expectRefused(bands, {}, {"R1", "R2", "--any-calibration"});
+    EXPECT_TRUE(merged(bands, {.anyCalibration = true}));
 }
 
 TEST(Merging, ScatteredBandsMeetAtTheirPairs) {
@@ -152,8 +171,8 @@ TEST(Merging, ScatteredBandsMeetAtTheirPairs) {
     ASSERT_TRUE(proc::writeFile(folder / "paint_G.csv",
                                 "theta_i,phi_i,theta_o,phi_o,f,flags\n"
                                 "20,0,30,180,0.75,1\n20,0,60,10,0.125,5\n20,0,32,180,9,3\n"));
-    ASSERT_TRUE(
-        proc::writeFile(folder / "paint-Blue.csv", head + "20,0,30,180,1\n20,0,32,180,2\n"));
+    ASSERT_TRUE(proc::writeFile(folder / "paint-Blue.csv",
+                                head + "20,0,30,180,1\n20,0,32,180,2\n20,0,30.0625,180,1.5\n"));
     const auto inputs = readMergeInputs({(folder / "paint_G.csv").string(),
                                          (folder / "paint-Blue.csv").string(),
                                          (folder / "paint_R.csv").string()},
@@ -161,12 +180,15 @@ TEST(Merging, ScatteredBandsMeetAtTheirPairs) {
     ASSERT_TRUE(inputs) << inputs.error().message;
     const Result<Merged> done = merged(*inputs, {});
     ASSERT_TRUE(done) << done.error().message;
-    // 32 degrees: green was saturated, and is estimated from 30; 60 degrees: only green was there.
+    // 32 degrees: green was saturated, and is estimated from 30; 60 degrees: only green was there;
+    // blue measured twice near 30 degrees.
     EXPECT_EQ(channelCsv(done->rows),
               "theta_i,phi_i,theta_o,phi_o,f_r,f_g,f_b,flags_r,flags_g,flags_b\n"
               "20,0,30,180,0.5,0.75,1,1,1,1\n"
               "20,0,32,180,-0.25,0.75,2,1,64,1\n"
-              "20,0,60,10,,0.125,,0,5,0\n");
+              "20,0,60,10,,0.125,,0,5,0\n"
+              "20,0,30.0625,180,0.5,0.75,1.5,1,1,1\n");
+    EXPECT_EQ((*done->channels)[2].partners, 3U);
     ASSERT_TRUE(proc::writeFile(folder / "paint.csv", head + "20,0,30,180,0.5\n"));
     const auto unnamed = readMergeInputs({(folder / "paint.csv").string()}, {});
     ASSERT_FALSE(unnamed);

@@ -41,6 +41,7 @@ TEST(SymmetryVerdicts, WarnWhereTheDifferenceIsLargeAndMoreThanChance) {
     const Verdict large = planeVerdict(skewed(0.04));
     EXPECT_EQ(large.grade, Grade::Warned) << described(large);
     EXPECT_NEAR(large.figure->value, 0.04 / std::sqrt(2.0), 1e-3);
+    EXPECT_NE(large.evidence.find("rms from their mean"), std::string::npos) << large.evidence;
     EXPECT_FALSE(large.next.empty());
     EXPECT_EQ(planeVerdict(skewed(0.0282)).grade, Grade::Ok);      // chi-square 3.98, 1.99 %
     EXPECT_EQ(planeVerdict(skewed(0.0286)).grade, Grade::Warned);  // 4.09, 2.02 %
@@ -60,11 +61,13 @@ TEST(SymmetryVerdicts, WarnWhereTheDifferenceIsLargeAndMoreThanChance) {
 TEST(SymmetryVerdicts, RepeatsAreJudgedByTheirOutliersAndTheirLight) {
     EXPECT_EQ(repeatsVerdict(Averaged{}).grade, Grade::NotDetermined);
     Averaged repeats;
-    repeats.cells.freedom = 100'000;
+    repeats.cells.freedom = 50'000;
+    repeats.cells.values = 100'000;
     repeats.cells.outliers = 10;
     EXPECT_EQ(repeatsVerdict(repeats).grade, Grade::Ok);
     repeats.cells.outliers = 11;
     EXPECT_EQ(repeatsVerdict(repeats).grade, Grade::Warned);
+    EXPECT_NE(repeatsVerdict(repeats).evidence.find("11 of 100000 values"), std::string::npos);
     repeats.cells.outliers = 0;
     repeats.scales.outliers = 1;
     EXPECT_EQ(repeatsVerdict(repeats).grade, Grade::Warned);

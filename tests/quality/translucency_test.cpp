@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "proc/table/rotations.h"
 #include "tests/support/sample_sets.h"
 
 namespace gonio::proc {
@@ -67,6 +68,9 @@ TEST(Translucency, OfOneMeasurementIsNotDeterminedAndSaysWhatToDo) {
     EXPECT_EQ(translucencyVerdict({}, {}).grade, Grade::NotDetermined);
     const SampleSet black = grey({});
     EXPECT_FALSE(backingDifference({.black = black, .white = {}}));
+    SampleSet turned = grey(kDeep);
+    turnTo(turned, 90_deg);
+    EXPECT_FALSE(backingDifference({.black = black, .white = turned}));
 }
 
 TEST(Translucency, BackingsHaveNames) {

@@ -64,7 +64,7 @@ TEST(CellMean, AveragesWhatIsRandomAndKeepsWhatIsNot) {
     EXPECT_NEAR(mean.mean.uSystematic, 0.8 * 0.1 + 0.2 * 0.2, 1e-15);
     EXPECT_NEAR(mean.group.chiSquare, 1 / (0.3 * 0.3 + 0.6 * 0.6), 1e-12);
     EXPECT_EQ(mean.group.freedom, 1U);
-    EXPECT_EQ(mean.widening(), 1);
+    EXPECT_EQ(mean.uRandom(), mean.mean.uRandom);
 
     const std::vector<CellValue> one{value(-0.25, 0.125, 0.5)};
     EXPECT_EQ(meanOf(one).mean.value, -0.25);
@@ -75,7 +75,13 @@ TEST(CellMean, AveragesWhatIsRandomAndKeepsWhatIsNot) {
     const std::vector<CellValue> off{value(1, 0.01, 0), value(1.01, 0.01, 0), value(2, 0.01, 0)};
     EXPECT_LT(meanOf(off).mean.value, 1.1);
     EXPECT_GT(meanOf(off).away[2], kOutlier);
-    EXPECT_GT(meanOf(off).mean.uRandom * meanOf(off).widening(), 0.2);
+    EXPECT_GT(meanOf(off).uRandom(), 0.2);
+
+    // What contradicts is the whole of u_apart: sqrt(50 / 1) * 0.02 / sqrt(2), most of it
+    // systematic.
+    std::vector<CellValue> apart{value(1, 0.001, 0.02), value(1.2, 0.001, 0.02)};
+    for (CellValue& each : apart) each.uApart = apartFrom(each.value, 0);
+    EXPECT_NEAR(meanOf(apart).uRandom(), 0.1, 1e-3);
 
     // No uncertainty at all: what is equal agrees.
     const std::vector<CellValue> exact{value(0.5, 0, 0), value(0.5, 0, 0)};
@@ -86,6 +92,7 @@ TEST(CellMean, AveragesWhatIsRandomAndKeepsWhatIsNot) {
 TEST(AverageOf, CapturesOfOneTruthDifferByTheirNoiseAndTheirLight) {
     const std::vector<SampleSet> captures{capture(1), capture(2, 1.004), capture(3, 0.999)};
     const Averaged average = averageOf(captures);
+    EXPECT_EQ(2 * average.cells.values, 3 * average.cells.freedom);
     EXPECT_NEAR(average.cells.perFreedom(), 1, chance(average.cells));
     EXPECT_GT(average.cells.probability(), 1e-4);
     ASSERT_EQ(average.states.size(), 3U);
@@ -101,16 +108,66 @@ TEST(AverageOf, CapturesOfOneTruthDifferByTheirNoiseAndTheirLight) {
         EXPECT_NEAR(red(average.set).uRandom[cell], noise, 0.02 * noise);
         EXPECT_NEAR(red(average.set).uSystematic[cell], std::hypot(kCommon, kLight) * truth, 1e-12);
     }
-    const std::string budget = averagedBudget(captures, std::sqrt(average.weightSquares));
+    const std::string budget =
+        averagedBudget(average.set, captures, std::sqrt(average.weightSquares));
     EXPECT_NE(budget.find("\"median_relative\":0.0057"), std::string::npos) << budget;
     EXPECT_NE(budget.find("\"median_relative\":0.005}"), std::string::npos) << budget;
 
+    // Of files that were merged of several calibrations nobody knows which calibration is whose.
+    std::vector<SampleSet> joint = captures;
+    for (SampleSet& set : joint) set.info.calibrationId = "1+2+3; 4+5+6";
+    EXPECT_NEAR(averageOf(joint).states[1].u, kLight, 1e-4);
+
     // Light that changed by 3 % is named, and does not count against the cells.
-    const std::vector<SampleSet> changed{capture(1), capture(2, 1.03)};
+    std::vector<SampleSet> changed{capture(1), capture(2, 1.03)};
     const Averaged bright = averageOf(changed);
     EXPECT_NEAR(bright.cells.perFreedom(), 1, chance(bright.cells));
     EXPECT_GT(bright.scales.perFreedom(), 20);
     EXPECT_EQ(bright.scales.outliers, 2U);
+
+    // The noisier of two hardly counts in the mean: both are as far from each other all the same.
+    for (double& u : changed[1].leds[0].bands[0].uRandom) u *= 10;
+    const Averaged uneven = averageOf(changed);
+    ASSERT_EQ(uneven.states.size(), 2U);
+    const double scale = uneven.states[1].scale / uneven.states[0].scale - 1;
+    const double apart = scale / std::hypot(uneven.states[0].u, uneven.states[1].u);
+    EXPECT_NEAR(uneven.states[0].away, -apart, 0.02 * apart);
+    EXPECT_NEAR(uneven.states[1].away, apart, 0.02 * apart);
+    EXPECT_NEAR(uneven.scales.chiSquare, apart * apart, 0.04 * apart * apart);
+
+    // However much it changed, and though a tenth of the cells has dust on it.
+    std::vector<SampleSet> far{capture(1), capture(2, 1.2)};
+    for (std::size_t cell = 0; cell < CellGrid::count(); cell += 10)
+        far[1].leds[0].bands[0].f[cell] *= 1.5;
+    const Averaged much = averageOf(far);
+    ASSERT_EQ(much.states.size(), 2U);
+    EXPECT_NEAR(much.states[1].scale / much.states[0].scale, 1.2, 1e-3);
+    EXPECT_EQ(much.scales.outliers, 2U);
+    EXPECT_NEAR(static_cast<double>(much.cells.outliers),
+                0.2 * static_cast<double>(much.cells.freedom),
+                20);
+}
+
+/// A budget names its tables by their numbers, which differ from capture to capture.
+TEST(MergedInfo, AnAveragesBudgetFollowsTheIncidences) {
+    const auto set = [](const std::vector<Radians>& incidences, const std::string& budget) {
+        SampleSet made;
+        for (const Radians one : incidences)
+            made.leds.push_back({.incidence = one, .rotation = {}, .bands = {}});
+        made.info.budgetJson = budget;
+        return made;
+    };
+    const std::vector<SampleSet> captures{
+        set({40_deg, 20_deg},
+            R"([{"led":1,"band":"r","components":[{"name":"white","median_relative":0.25}]},
+                {"led":0,"band":"r","components":[{"name":7,"median_relative":0.5}]}])"),
+        set({20_deg, 60_deg},
+            R"([{"led":0,"band":"r","components":[{"name":"white","median_relative":0.75}]},
+                {"led":1,"band":"r","components":[{"name":"white","median_relative":0.125}]}])")};
+    EXPECT_EQ(averagedBudget(set({20_deg, 40_deg, 60_deg}, ""), captures, 1),
+              R"([{"led":0,"band":"r","components":[{"name":"white","median_relative":0.5}]},)"
+              R"({"led":1,"band":"r","components":[{"name":7,"median_relative":0.5}]},)"
+              R"({"led":2,"band":"r","components":[{"name":"white","median_relative":0.125}]}])");
 }
 
 TEST(AverageOf, DustIsReportedAndWidensWhatItTouches) {
@@ -118,7 +175,6 @@ TEST(AverageOf, DustIsReportedAndWidensWhatItTouches) {
     CellSamples& dusty = captures[1].leds[0].bands[0];
     for (std::size_t cell = 5000; cell < 5030; ++cell) dusty.f[cell] *= 1.3;
     const Averaged average = averageOf(captures);
-    EXPECT_EQ(average.outliersOf, (std::vector<std::size_t>{0, 30, 0}));
     ASSERT_EQ(average.outliers.size(), 30U);
     for (const Outlier& one : average.outliers) {
         EXPECT_EQ(one.capture, 1U);
@@ -201,7 +257,8 @@ TEST(ReciprocalAverage, BringsPairsOfAnyTwoRotationsTogether) {
         }
     }
     const Reciprocal good = reciprocalAverage(set);
-    EXPECT_EQ(good.pairs, 3U * 12U);  // 2 x 2 rotations of each of three pairs of LEDs
+    // 2 x 2 rotations of each of three pairs of LEDs, and each LED with itself turned.
+    EXPECT_EQ(good.pairs, 3U * (12U + 3U));
     EXPECT_LT(good.consistency.perFreedom(), 0.01);  // bilinear alone
     for (CellSamples& cells : set.leds[2].bands) {
         for (double& f : cells.f) f *= 1.2;
@@ -211,6 +268,24 @@ TEST(ReciprocalAverage, BringsPairsOfAnyTwoRotationsTogether) {
     const std::size_t cell = *CellGrid::cellAt(Direction::fromSpherical(20_deg, Radians(0)));
     EXPECT_TRUE(bad.set.leds[2].bands[0].flags[cell].has(Flag::Reciprocity));
     EXPECT_LT(bad.set.leds[2].bands[0].f[cell], set.leds[2].bands[0].f[cell]);
+}
+
+/// A cell that has several partners moves to the mean of all, not by each of them in turn.
+TEST(ReciprocalAverage, MovesACellOnceHoweverManyPartnersItHas) {
+    const auto flat = [](double f) {
+        return test::ledTable(20_deg, [f](Radians, const Direction&) { return f; });
+    };
+    SampleSet set;
+    set.leds = {flat(1.09), flat(1), flat(1), flat(1)};
+    for (std::size_t i = 1; i < 4; ++i) {
+        set.leds[i].incidence = Radians();
+        set.leds[i].rotation = rotationOf(30.0 * static_cast<double>(i));
+    }
+    const SampleSet averaged = reciprocalAverage(set).set;
+    const std::size_t normal = *CellGrid::cellAt(Direction::fromSpherical(0_deg, Radians()));
+    // u_apart is 2.24 % of f: weights 1 / 1.09^2, 1, 1, 1.
+    EXPECT_NEAR(red(averaged).f[normal], (1 / 1.09 + 3) / (1 / (1.09 * 1.09) + 3), 1e-9);
+    EXPECT_NEAR(red(averaged).uRandom[normal], 0.01 / std::sqrt(1 / (1.09 * 1.09) + 3), 1e-9);
 }
 
 }  // namespace
