@@ -37,7 +37,9 @@ SampleSet tile() {
         R"({"name":"white reference, common","type":"B","correlation":"common",)"
         R"("median_relative":0.006,"size":0.005,"unit":"relative","freedom":null},)"
         R"({"name":"direction of the cell","type":"A","correlation":"per state",)"
-        R"("median_relative":0.008,"size":0.004,"unit":"degree","freedom":10}]}])";
+        R"("median_relative":0.008,"size":0.004,"unit":"degree","freedom":10}]},)"
+        R"({"led":0,"band":"g","components":[{"name":"white reference, common","type":"B",)"
+        R"("correlation":"common","median_relative":0.006,"size":0.005,"unit":"relative"}]}])";
     const std::vector<Verdict> verdicts{
         {.name = "tilt",
          .grade = Grade::Warned,
@@ -101,10 +103,17 @@ TEST(SampleReport, SaysWhatTheFileSays) {
     // 0.6 and 0.8 % are 1.0 % together; 0.36 and 0.64 of the variance; 10 / 0.64^2 = 24.4.
     EXPECT_EQ(rowOf(xml, "white reference, common"),
               (std::vector<std::string>{
-                  "B", "common", "0.50 %", "0.60 %", "not known", "not known", "36.0 %", "many"}));
-    EXPECT_EQ(rowOf(xml, "combined, k = 1").at(3), "1.0 %");
-    EXPECT_EQ(rowOf(xml, "expanded, k = 2 (about 95 %)").at(3), "2.0 %");
-    EXPECT_EQ(rowOf(xml, "effective degrees of freedom").at(3), "24");
+                  "B", "common", "0.50 %", "0.60 %", "0.60 %", "not known", "36.0 %", "many"}));
+    // Of green one component is known, of blue none.
+    const auto expectTotal = [&](const char* head, const std::vector<std::string>& bands) {
+        std::vector<std::string> row{"", "", ""};
+        row.insert(row.end(), bands.begin(), bands.end());
+        row.insert(row.end(), 2, "");
+        EXPECT_EQ(rowOf(xml, head), row);
+    };
+    expectTotal("combined, k = 1", {"1.0 %", "at least 0.60 %", "not known"});
+    expectTotal("expanded, k = 2 (about 95 %)", {"2.0 %", "at least 1.2 %", "not known"});
+    expectTotal("effective degrees of freedom", {"24", "not known", "not known"});
     // Two tables have rows of 40 degrees: uncertainties, albedo.
     const Albedo albedo = directionalAlbedo(set.leds[2]);
     const BandAlbedo& green = albedo[Band::G];
