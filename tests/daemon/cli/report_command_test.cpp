@@ -136,5 +136,22 @@ TEST_F(OnASample, AnAlbedoIsOfEachRotation) {
     EXPECT_NE(test::textOf(page).find("measured at several rotations"), std::string::npos);
 }
 
+TEST_F(OnASample, InfoStandsABudgetThatIsNone) {
+    proc::SampleSet set;
+    set.leds.push_back(test::ledTable(20_deg, [](Radians, const Direction&) { return kF; }));
+    for (const char* broken :
+         {"banana",
+          R"([1,{"led":-1},{"led":0,"band":"x"},{"led":0,"band":"r","components":[3,)"
+          R"({"name":"white","median_relative":"x","size":[],"freedom":{}}]}])"}) {
+        set.info.budgetJson = broken;
+        EXPECT_TRUE(proc::writeGonio(file, set));
+        const Json told = documentOf(gonio, {"info", file});
+        EXPECT_TRUE(told["budget"].is_array()) << broken;
+        const Ran plain = gonio({"info", file});
+        EXPECT_EQ(plain.exitCode, 0) << broken << plain.err;
+    }
+    EXPECT_EQ(documentOf(gonio, {"info", file})["budget"][0]["components"].size(), 1U);
+}
+
 }  // namespace
 }  // namespace gonio
