@@ -34,6 +34,7 @@ Result<Prior> priorOf(const EstimatorChoice& choice) {
     });
 }
 
+/// Of a sample or a table.
 std::vector<Radians> rotationsOf(const Material& material) {
     if (material.sample != nullptr) return proc::rotationsOf(*material.sample);
     std::vector<Radians> rotations;
@@ -117,6 +118,12 @@ Result<void> checkName(const std::string& name) {
 }
 
 }  // namespace
+
+std::vector<Radians> Estimated::rotations() const {
+    const bool knows = material.sample != nullptr || material.table != nullptr;
+    const std::vector<Radians> known = knows ? rotationsOf(material) : std::vector<Radians>{};
+    return known.empty() ? std::vector<Radians>{Radians()} : known;
+}
 
 bool holdsScattered(const std::string& f) { return std::filesystem::path(f).extension() == ".csv"; }
 

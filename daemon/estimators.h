@@ -37,6 +37,8 @@ struct Estimated {
     [[nodiscard]] std::vector<Radians> incidences() const {
         return scattered.empty() ? material.incidences() : scattered;
     }
+    /// Of the sample on the stage, ascending, each once; 0 where the file knows none.
+    [[nodiscard]] std::vector<Radians> rotations() const;
 };
 
 /// Whether F is a .csv of scattered values: `auto` is then the only one.

@@ -18,9 +18,9 @@ using Json = nlohmann::ordered_json;
 std::vector<AlbedoRow> ofCells(const proc::SampleSet& sample) {
     std::vector<AlbedoRow> rows;
     for (const proc::LedTable& led : sample.leds) {
-        rows.push_back({led.incidence, proc::directionalAlbedo(led)});
+        rows.push_back({led.incidence, led.rotation, proc::directionalAlbedo(led)});
     }
-    rows.push_back({std::nullopt, proc::meanAlbedo(sample)});
+    rows.push_back({std::nullopt, Radians(), proc::meanAlbedo(sample)});
     return rows;
 }
 
@@ -43,7 +43,10 @@ Result<void> albedo(const CommonOptions& common, const AlbedoOptions& options) {
                                                        : incidenceList(options.incidences);
     if (!incidences) return incidences.error().in("albedo");
     const auto rows =
-        cells ? ofCells(*sample) : albedoRows(*opened->scatterer, *incidences, *effort);
+        cells ? ofCells(*sample)
+              : albedoRows(*opened->scatterer,
+                           {.incidences = *incidences, .rotations = opened->rotations()},
+                           *effort);
     if (common.json) {
         Json all = Json::array();
         for (const AlbedoRow& row : rows) all.push_back(albedoJson(row));

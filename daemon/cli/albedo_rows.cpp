@@ -5,6 +5,7 @@
 
 #include "proc/core/number_text.h"
 #include "proc/core/parallel.h"
+#include "proc/estimate/sample_albedo.h"
 #include "proc/formats/file_degrees.h"
 
 namespace gonio::daemon {
@@ -28,32 +29,55 @@ proc::MeanAlbedoOptions optionsOf(Effort effort) {
     // An estimator takes microseconds for an answer: its albedo is worth a thousandth.
     return {.directional = {.tolerance = 1e-4, .mostEvaluations = 20000},
             .tolerance = 1e-3,
-            .mostIncidences = 15};
+            .mostIncidences = 45};
 }
 
 std::string shown(const std::optional<double>& value) {
     return value && !std::isnan(*value) ? fixed(*value, 5) : "";
 }
 
+/// A surface as the light sees it that stands at azimuth 0 of a turned sample. Borrows it.
+class Turned : public Scatterer {
+public:
+    Turned(const Scatterer& surface, Radians rotation) : surface_(surface), rotation_(rotation) {}
+    [[nodiscard]] Answer answer(const LightView& pair) const override {
+        return surface_.answer(
+            {.in = pair.in.turned(-rotation_), .out = pair.out.turned(-rotation_)});
+    }
+    [[nodiscard]] BandCount bandCount() const override { return surface_.bandCount(); }
+
+private:
+    const Scatterer& surface_;
+    Radians rotation_;
+};
+
 }  // namespace
 
 std::vector<AlbedoRow> albedoRows(const Scatterer& surface,
-                                  const std::vector<Radians>& incidences,
+                                  const AlbedoLights& lights,
                                   Effort effort) {
     const proc::MeanAlbedoOptions options = optionsOf(effort);
-    std::vector<AlbedoRow> rows(incidences.size());
+    const std::size_t count = lights.incidences.size();
+    std::vector<AlbedoRow> rows(count * lights.rotations.size());
     parallelFor(rows.size(), [&](IndexRange range) {
         for (std::size_t i = range.begin; i < range.end; ++i) {
-            const Direction wi = Direction::fromSpherical(incidences[i], Radians(0));
-            rows[i] = {incidences[i], proc::directionalAlbedo(surface, wi, options.directional)};
+            const Radians incidence = lights.incidences[i % count];
+            const Radians rotation = lights.rotations[i / count];
+            const Direction wi = Direction::fromSpherical(incidence, -rotation);
+            rows[i] = {
+                incidence, rotation, proc::directionalAlbedo(surface, wi, options.directional)};
         }
     });
-    rows.push_back({std::nullopt, proc::meanAlbedo(surface, options)});
+    std::vector<proc::Albedo> means;
+    for (const Radians rotation : lights.rotations)
+        means.push_back(proc::meanAlbedo(Turned(surface, rotation), options));
+    rows.push_back({std::nullopt, Radians(), proc::averagedAlbedo(means)});
     return rows;
 }
 
 std::vector<std::vector<std::string>> albedoTable(const std::vector<AlbedoRow>& rows) {
     std::vector<std::vector<std::string>> table{{"incidence",
+                                                 "rotation",
                                                  "band",
                                                  "albedo",
                                                  "u_random",
@@ -66,6 +90,7 @@ std::vector<std::vector<std::string>> albedoTable(const std::vector<AlbedoRow>& 
         for (const Band band : kBands) {
             const proc::BandAlbedo& one = row.albedo[band];
             table.push_back({row.incidence ? shortest(proc::fileDegrees(*row.incidence)) : "mean",
+                             row.incidence ? shortest(proc::fileDegrees(row.rotation)) : "",
                              std::string(letter(band)),
                              shown(one.value),
                              shown(one.uRandom),
@@ -83,7 +108,9 @@ Json albedoJson(const AlbedoRow& row) {
     const auto number = [](const std::optional<double>& v) {
         return v && std::isfinite(*v) ? Json(*v) : Json(nullptr);
     };
-    Json json{{"incidence_deg", row.incidence ? Json(row.incidence->degrees()) : Json(nullptr)}};
+    Json json{
+        {"incidence_deg", row.incidence ? Json(proc::fileDegrees(*row.incidence)) : Json(nullptr)},
+        {"rotation_deg", row.incidence ? Json(proc::fileDegrees(row.rotation)) : Json(nullptr)}};
     for (const Band band : kBands) {
         const proc::BandAlbedo& one = row.albedo[band];
         json["bands"][std::string(letter(band))] = {{"albedo", number(one.value)},

@@ -48,7 +48,7 @@ std::vector<std::vector<std::string>> tableOf(const std::vector<Difference>& row
 
 Json toJson(const Difference& row) {
     const auto number = [](double v) { return std::isfinite(v) ? Json(v) : Json(nullptr); };
-    return {{"incidence_deg", row.incidence.degrees()},
+    return {{"incidence_deg", proc::fileDegrees(row.incidence)},
             {"region", row.region},
             {"band", letter(row.band)},
             {"values", row.values},

@@ -73,7 +73,9 @@ std::vector<std::vector<std::string>> candidateTable(const std::vector<proc::Met
 EstimatorFacts estimatorFacts(const Estimated& opened, const std::string& name) {
     EstimatorFacts facts{.name = name, .choice = {}, .albedo = {}};
     if (opened.sample != nullptr) facts.choice = choiceOf(*opened.sample);
-    facts.albedo = albedoRows(*opened.scatterer, opened.incidences(), Effort::Standard);
+    facts.albedo = albedoRows(*opened.scatterer,
+                              {.incidences = opened.incidences(), .rotations = opened.rotations()},
+                              Effort::Standard);
     return facts;
 }
 

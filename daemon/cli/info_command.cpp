@@ -49,7 +49,7 @@ Json sampleJson(const proc::SampleSet& sample) {
     json["rig_seconds"] = info.rigSeconds;
     json["compute_seconds"] = info.computeSeconds;
     if (!info.truthSpec.empty()) json["truth"] = info.truthSpec;
-    if (!info.budgetJson.empty()) json["budget"] = Json::parse(info.budgetJson, nullptr, false);
+    if (!info.budgetJson.empty()) json["budget"] = budgetJson(proc::readBudget(info.budgetJson));
     Json leds = Json::array();
     for (const proc::LedTable& led : sample.leds) {
         Json entry;
@@ -154,6 +154,7 @@ Json rawJson(const proc::RawCapture& capture) {
 
 struct Info {
     Json file;
+    std::vector<proc::StateBudget> budget;    ///< of a measured sample
     std::optional<EstimatorFacts> estimator;  ///< where one was asked for
 };
 
@@ -166,7 +167,7 @@ Result<Info> infoOf(const CommonOptions& common, const InfoOptions& options) {
         }
         const Result<proc::RawCapture> capture = proc::readGraw(file);
         if (!capture) return capture.error();
-        return Info{rawJson(*capture), {}};
+        return Info{rawJson(*capture), {}, {}};
     }
     const bool estimates = options.estimator != "none";
     const Result<Estimated> opened = openSurface(file, common.store, options.estimator);
@@ -177,7 +178,9 @@ Result<Info> infoOf(const CommonOptions& common, const InfoOptions& options) {
     json["bands"] = material.scatterer->bandCount() == BandCount::One ? 1 : 3;
     if (material.sample != nullptr) json.update(sampleJson(*material.sample));
     if (material.table != nullptr) json.update(tableJson(*material.table));
-    Info info{std::move(json), {}};
+    Info info{std::move(json), {}, {}};
+    if (material.sample != nullptr)
+        info.budget = proc::readBudget(material.sample->info.budgetJson);
     if (estimates) info.estimator = estimatorFacts(*opened, options.estimator);
     return info;
 }
@@ -195,7 +198,7 @@ Result<void> info(const CommonOptions& common, const InfoOptions& options) {
     } else {
         std::cout << "file: " << options.file << "\n";
         Json plain = withReadableVerdicts(found->file);
-        const std::string budget = budgetTable(plain.value("budget", Json::array()));
+        const std::string budget = budgetTable(found->budget);
         if (!budget.empty()) plain.erase("budget");
         printPlain(plain, "");
         if (!budget.empty()) {

@@ -10,8 +10,10 @@
 #include "daemon/estimators.h"
 #include "daemon/report_source.h"
 #include "daemon/utc_now.h"
+#include "proc/fit/selection.h"
 #include "proc/formats/file_bytes.h"
 #include "proc/report/sample_report.h"
+#include "proc/table/rotations.h"
 
 namespace gonio::daemon {
 namespace {
@@ -49,8 +51,14 @@ Result<void> addEstimator(Estimates& all, const Material& material, const std::s
     if (!made) return made.error();
     all.estimated = std::move(*made);
     all.shown.estimator = all.estimated.sample;
-    if (all.shown.estimator == nullptr)
-        all.shown.noEstimator = "The method '" + name + "' says nothing of its own errors.";
+    if (all.shown.estimator != nullptr) return {};
+    all.shown.noEstimator =
+        proc::rotationsOf(*material.sample).size() > 1
+            ? "The sample was measured at several rotations: each has an estimator of its own, and "
+              "between two of them answers are linear in the light's azimuth. What "
+              "is known of their errors is in the uncertainties that 'gonio eval' writes; this "
+              "report does not list it."
+            : "The method '" + name + "' says nothing of its own errors.";
     return {};
 }
 

@@ -17,7 +17,7 @@ namespace {
 
 /// Coordinates of a pair under a process: distances of such places are Euclidean.
 Place placeOf(const KrigingProcess& process, const LightView& pair) {
-    const LightView straight = withLightAtZero(pair);
+    const LightView straight = isotropicPair(pair);
     const auto rho = [&](const Direction& w) {
         const double disc = std::sqrt(2.0) * std::sin(w.theta().value() / 2);
         return disc * (1 + process.grazing * std::pow(disc, 6));
@@ -37,6 +37,12 @@ double matern(double distance) {
 }
 
 }  // namespace
+
+LightView isotropicPair(const LightView& pair) {
+    constexpr Radians kNormal(1e-9);
+    if (pair.in.theta() > kNormal) return withLightAtZero(pair);
+    return {.in = Direction(), .out = Direction::fromSpherical(pair.out.theta(), Radians(0))};
+}
 
 double correlation(const KrigingPlace& a, const KrigingPlace& b) {
     const auto of = [](const Place& p, const Place& q) { return matern((p - q).norm()); };

@@ -1,9 +1,9 @@
 #pragma once
 // A Gaussian process over pairs of directions of an isotropic, reciprocal surface.
 //
-// Coordinates of a pair: (rho_i, x, |y|), the light at phi = 0 and each direction on the equal-area
-// disc, rho = sqrt(2) sin(theta / 2), which is drawn out towards grazing (rho (1 + g rho^6)), and x
-// counted from the mirror direction, where that predicts better.
+// Coordinates of a pair: (rho_i, x, |y|), the light at phi = 0 (at the normal: the view) and each
+// direction on the equal-area disc, rho = sqrt(2) sin(theta / 2), which is drawn out towards
+// grazing (rho (1 + g rho^6)), and x counted from the mirror direction, where that predicts better.
 // Covariance of two pairs: Matern's of order 5/2 of their distance, averaged over exchanging light
 // and view of either.
 
@@ -23,6 +23,10 @@ struct KrigingProcess {
     double variance = 1e-2;  ///< of the values
     bool learned = false;    ///< else all of this is assumed
 };
+
+/// withLightAtZero; with the light at the normal, where an isotropic surface knows no azimuth, the
+/// view at phi = 0.
+[[nodiscard]] LightView isotropicPair(const LightView& pair);
 
 /// A pair's place in a process's coordinates, both ways round.
 struct KrigingPlace {

@@ -60,14 +60,13 @@ BandAlbedo summed(const CellSamples& cells, std::size_t& summedCells) {
 
 /// At the centres of the cells that some band lacks; elsewhere nothing.
 std::vector<Answer> answersAtHoles(const LedTable& led, const Scatterer& beyond) {
-    const Direction wi = Direction::fromSpherical(led.incidence, Radians(0));
     std::vector<Answer> answers(CellGrid::count(), Answer::none({}, Source::Measured));
     parallelFor(answers.size(), [&](IndexRange range) {
         for (std::size_t cell = range.begin; cell < range.end; ++cell) {
             const bool whole = std::all_of(led.bands.begin(),
                                            led.bands.end(),
                                            [&](const auto& own) { return counts(own, cell); });
-            if (!whole) answers[cell] = beyond.answer({.in = wi, .out = CellGrid::centre(cell)});
+            if (!whole) answers[cell] = beyond.answer(pairInSample(led, CellGrid::centre(cell)));
         }
     });
     return answers;
@@ -135,26 +134,6 @@ BandAlbedo meanOf(const std::vector<Albedo>& leds,
             .missing = std::clamp(1 - answered, 0.0, 1.0)};
 }
 
-/// Each rotation counts as much as another; what is common to them does not average out.
-Albedo meanOverRotations(const SampleSet& sample, const std::vector<Radians>& rotations) {
-    const double share = 1 / static_cast<double>(rotations.size());
-    Albedo mean{.bands = {}, .evaluations = 0, .converged = true};
-    for (BandAlbedo& band : mean.bands) band = {0, 0, 0.0, 0.0, 0};
-    for (const Radians rotation : rotations) {
-        const Albedo one = meanAlbedo(atRotation(sample, rotation));
-        mean.evaluations += one.evaluations;
-        for (std::size_t b = 0; b < 3; ++b) {
-            BandAlbedo& band = mean.bands[b];
-            band.value += share * one.bands[b].value;
-            band.errorBound += share * one.bands[b].errorBound;
-            *band.uRandom = std::hypot(*band.uRandom, share * one.bands[b].uRandom.value_or(kNan));
-            *band.uSystematic += share * one.bands[b].uSystematic.value_or(kNan);
-            band.missing += share * one.bands[b].missing;
-        }
-    }
-    return mean;
-}
-
 }  // namespace
 
 double projectedSolidAngle(std::size_t cell) {
@@ -172,6 +151,33 @@ Albedo directionalAlbedo(const LedTable& led) {
     }
     albedo.converged = true;
     return albedo;
+}
+
+Albedo averagedAlbedo(const std::vector<Albedo>& rotations) {
+    const double share = 1 / static_cast<double>(rotations.size());
+    Albedo mean{.bands = {}, .evaluations = 0, .converged = true};
+    for (BandAlbedo& band : mean.bands) band = {0, 0, 0.0, 0.0, 0};
+    for (const Albedo& one : rotations) {
+        mean.evaluations += one.evaluations;
+        mean.converged = mean.converged && one.converged;
+        for (std::size_t b = 0; b < 3; ++b) {
+            BandAlbedo& band = mean.bands[b];
+            band.value += share * one.bands[b].value;
+            band.errorBound += share * one.bands[b].errorBound;
+            band.missing += share * one.bands[b].missing;
+            if (band.uRandom && one.bands[b].uRandom) {
+                band.uRandom = std::hypot(*band.uRandom, share * *one.bands[b].uRandom);
+            } else {
+                band.uRandom.reset();
+            }
+            if (band.uSystematic && one.bands[b].uSystematic) {
+                *band.uSystematic += share * *one.bands[b].uSystematic;
+            } else {
+                band.uSystematic.reset();
+            }
+        }
+    }
+    return mean;
 }
 
 Albedo filledAlbedo(const LedTable& led, const Scatterer& beyond) {
@@ -201,7 +207,11 @@ Albedo filledAlbedo(const LedTable& led, const Scatterer& beyond) {
 
 Albedo meanAlbedo(const SampleSet& sample) {
     const std::vector<Radians> rotations = rotationsOf(sample);
-    if (rotations.size() > 1) return meanOverRotations(sample, rotations);
+    if (rotations.size() > 1) {
+        std::vector<Albedo> each;
+        for (const Radians one : rotations) each.push_back(meanAlbedo(atRotation(sample, one)));
+        return averagedAlbedo(each);
+    }
     std::vector<Albedo> leds;
     std::vector<double> at;
     Albedo mean;

@@ -26,11 +26,15 @@ namespace gonio::proc {
 /// its centre. The uncertainty is empty where such an answer has none.
 [[nodiscard]] Albedo filledAlbedo(const LedTable& led, const Scatterer& beyond);
 
+/// Mean over rotations of the sample, each counting alike: independent in what is random, of one
+/// mind in what is not. Unknown where one of them is. At least one.
+[[nodiscard]] Albedo averagedAlbedo(const std::vector<Albedo>& rotations);
+
 /// Of a whole sample, (1 / pi) integral of a cos(theta_i) dwi = integral of a d(sin^2(theta_i)),
 /// a linear in sin^2(theta_i) between LEDs: LEDs are independent in what is random. Incidences
 /// beyond the first and last LED count as missing. The error bound is of that line between LEDs,
 /// twice what their second differences say; NaN below three LEDs and where two share an incidence,
-/// where none can be had. Of several rotations, the mean of each one's.
+/// where none can be had. Of several rotations, the average of each one's.
 [[nodiscard]] Albedo meanAlbedo(const SampleSet& sample);
 
 }  // namespace gonio::proc

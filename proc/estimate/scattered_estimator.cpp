@@ -23,8 +23,8 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 /// But for a turn of both about the normal.
 bool samePair(const LightView& a, const LightView& b) {
     constexpr double kSame = 1e-9;
-    const LightView one = withLightAtZero(a);
-    const LightView other = withLightAtZero(b);
+    const LightView one = isotropicPair(a);
+    const LightView other = isotropicPair(b);
     return (one.in.vector() - other.in.vector()).norm() < kSame &&
            (one.out.vector() - other.out.vector()).norm() < kSame;
 }

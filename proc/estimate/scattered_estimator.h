@@ -49,7 +49,6 @@ public:
     /// Some ten microseconds a band; a fifth of a millisecond of more than 2048 samples.
     [[nodiscard]] Answer answer(const LightView& pair) const override;
     [[nodiscard]] BandCount bandCount() const override { return bands_; }
-    [[nodiscard]] const Carrier& carrier() const { return carrier_; }
 
 private:
     struct OneBand {

@@ -48,40 +48,61 @@ std::vector<Line> linesOf(const std::vector<StateBudget>& states) {
     return lines;
 }
 
-double varianceOf(const std::vector<Line>& lines, Band band) {
-    double sum = 0;
-    for (const Line& line : lines) sum += std::pow(line.of(band).value_or(0), 2);
-    return sum;
+constexpr const char* kNotKnown = "not known";
+
+/// Of the components that say what they do to a band.
+struct Total {
+    double variance = 0;
+    std::size_t known = 0, lines = 0;
+
+    [[nodiscard]] bool whole() const { return known == lines; }
+};
+
+Total totalOf(const std::vector<Line>& lines, Band band) {
+    Total total{.variance = 0, .known = 0, .lines = lines.size()};
+    for (const Line& line : lines) {
+        const auto relative = line.of(band);
+        if (!relative) continue;
+        total.variance += *relative * *relative;
+        ++total.known;
+    }
+    return total;
 }
 
-/// Mean over the bands of what share of the variance a line is.
-double shareOf(const Line& line, const std::vector<Line>& lines, const std::vector<Band>& bands) {
+/// `times` the root of a total.
+std::string rootText(const Total& total, double times) {
+    if (total.known == 0) return kNotKnown;
+    return (total.whole() ? "" : "at least ") + relativeText(times * std::sqrt(total.variance));
+}
+
+/// Mean over the bands, where all components are known, of what share of the variance a line is.
+std::string shareOf(const Line& line,
+                    const std::vector<Line>& lines,
+                    const std::vector<Band>& bands) {
     double sum = 0, counted = 0;
     for (const Band band : bands) {
-        const double variance = varianceOf(lines, band);
-        if (!(variance > 0)) continue;
-        sum += std::pow(line.of(band).value_or(0), 2) / variance;
+        const Total total = totalOf(lines, band);
+        if (!total.whole() || !(total.variance > 0)) continue;
+        sum += std::pow(*line.of(band), 2) / total.variance;
         ++counted;
     }
-    return counted > 0 ? sum / counted : 0;
+    return counted > 0 ? shareText(sum / counted) : kNotKnown;
 }
 
-/// Welch and Satterthwaite [Gum2008, G.2b]; empty: so many that it is sure.
+/// Welch and Satterthwaite [Gum2008, G.2b], where all components are known; empty: so many that it
+/// is sure.
 std::optional<double> effectiveFreedom(const std::vector<Line>& lines, Band band) {
     double sum = 0;
     for (const Line& line : lines) {
-        if (line.freedom && *line.freedom > 0)
-            sum += std::pow(line.of(band).value_or(0), 4) / *line.freedom;
+        if (line.freedom && *line.freedom > 0) sum += std::pow(*line.of(band), 4) / *line.freedom;
     }
     if (!(sum > 0)) return std::nullopt;
-    return std::pow(varianceOf(lines, band), 2) / sum;
+    return std::pow(totalOf(lines, band).variance, 2) / sum;
 }
 
-std::string sizeText(const Line& line) {
+std::string sizeOf(const Line& line) {
     const double size = median(line.sizes);
-    if (!(size > 0)) return "";
-    return line.first.unit == "relative" ? relativeText(size)
-                                         : significant(size, 2) + " " + line.first.unit;
+    return size > 0 ? sizeText(size, line.first.unit) : "";
 }
 
 std::string freedomText(std::optional<double> freedom) {
@@ -121,24 +142,24 @@ HtmlTable budgetTable(const SampleSet& sample) {
         std::vector<std::string> row{line.first.name,
                                      std::string(1, line.first.type),
                                      std::string(name(line.first.correlation)),
-                                     sizeText(line)};
+                                     sizeOf(line)};
         for (const Band band : bands) {
             const auto relative = line.of(band);
-            row.push_back(relative ? relativeText(*relative) : "not known");
+            row.push_back(relative ? relativeText(*relative) : kNotKnown);
         }
-        row.push_back(shareText(shareOf(line, lines, bands)));
+        row.push_back(shareOf(line, lines, bands));
         row.push_back(freedomText(line.freedom));
         table.add(row);
     }
     if (lines.empty()) return table;
-    table.add(totals("combined, k = 1", bands, [&](Band band) {
-        return relativeText(std::sqrt(varianceOf(lines, band)));
-    }));
+    table.add(totals(
+        "combined, k = 1", bands, [&](Band band) { return rootText(totalOf(lines, band), 1); }));
     table.add(totals("expanded, k = 2 (about 95 %)", bands, [&](Band band) {
-        return relativeText(kCoverageFactor * std::sqrt(varianceOf(lines, band)));
+        return rootText(totalOf(lines, band), kCoverageFactor);
     }));
     table.add(totals("effective degrees of freedom", bands, [&](Band band) {
-        return freedomText(effectiveFreedom(lines, band));
+        return totalOf(lines, band).whole() ? freedomText(effectiveFreedom(lines, band))
+                                            : kNotKnown;
     }));
     return table;
 }
@@ -152,7 +173,7 @@ HtmlTable achievedTable(const SampleSet& sample) {
                     .rows = {}};
     for (const Band band : bands) table.head.push_back(bandName(band));
     for (const LedTable& led : sample.leds) {
-        std::vector<std::string> row{degreesLabel(led.incidence)};
+        std::vector<std::string> row{lightLabel(led)};
         for (const Band band : bands) {
             const CellSamples* cells = cellsOf(led, band);
             const auto relative =

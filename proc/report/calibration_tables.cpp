@@ -1,8 +1,11 @@
 #include "proc/report/calibration_tables.h"
 
 #include <algorithm>
+#include <string_view>
+#include <vector>
 
 #include "proc/calibrate/budget_text.h"
+#include "proc/core/median.h"
 #include "proc/core/number_text.h"
 #include "proc/report/report_words.h"
 #include "proc/report/sample_tables.h"
@@ -12,26 +15,49 @@ namespace {
 
 constexpr double kHoursOfDay = 24;
 
-std::string ageText(const std::optional<double>& hours) {
-    if (!hours) return "not known";
-    if (*hours < 1) return fixed(*hours * 60, 0) + " min";
-    return *hours < 2 * kHoursOfDay ? fixed(*hours, 1) + " h"
-                                    : fixed(*hours / kHoursOfDay, 1) + " days";
+std::string spanText(double hours) {
+    if (hours < 1) return fixed(hours * 60, 0) + " min";
+    return hours < 2 * kHoursOfDay ? fixed(hours, 1) + " h"
+                                   : fixed(hours / kHoursOfDay, 1) + " days";
 }
 
-/// Sizes of the components with these words in their names, each once.
-std::string sizesOf(const SampleSet& sample, std::string_view words) {
-    std::string text;
-    std::vector<std::string> seen;
+std::string ageText(const std::optional<double>& hours) {
+    if (!hours) return "not known";
+    // `recalibrate` may take one that was made later.
+    if (*hours < 0) return spanText(-*hours) + " after the measurement";
+    return spanText(*hours);
+}
+
+bool isWhite(const std::string& name) { return name.rfind("white reference", 0) == 0; }
+/// "black reference", "zero reference": whichever the sample was worked out with.
+bool isLower(const std::string& name) {
+    constexpr std::string_view kReference = " reference";
+    return !isWhite(name) && name.size() > kReference.size() &&
+           name.compare(name.size() - kReference.size(), kReference.size(), kReference) == 0;
+}
+bool isDrift(const std::string& name) { return name.find("drift") != std::string::npos; }
+
+/// Sizes of the components of type B with such names: the median over the states that say one.
+std::string sizesOf(const SampleSet& sample, bool (*wanted)(const std::string& name)) {
+    struct Sizes {
+        std::string name, unit;
+        std::vector<double> values;
+    };
+    std::vector<Sizes> all;
     for (const StateBudget& state : readBudget(sample.info.budgetJson)) {
         for (const BudgetComponent& one : state.components) {
-            const bool wanted = one.name.find(words) != std::string::npos && one.size > 0 &&
-                                one.unit == "relative" && one.type == 'B';
-            if (!wanted || std::find(seen.begin(), seen.end(), one.name) != seen.end()) continue;
-            seen.push_back(one.name);
-            text += (text.empty() ? "" : "; ") + one.name + " " + relativeText(one.size);
+            if (one.type != 'B' || !(one.size > 0) || !wanted(one.name)) continue;
+            auto own = std::find_if(all.begin(), all.end(), [&](const Sizes& known) {
+                return known.name == one.name && known.unit == one.unit;
+            });
+            if (own == all.end()) own = all.insert(own, {one.name, one.unit, {}});
+            own->values.push_back(one.size);
         }
     }
+    std::string text;
+    for (const Sizes& one : all)
+        text +=
+            (text.empty() ? "" : "; ") + one.name + " " + sizeText(median(one.values), one.unit);
     return text.empty() ? std::string("no budget says") : text + " (k = 1)";
 }
 
@@ -74,11 +100,11 @@ Facts calibrationFacts(const SampleSet& sample) {
     const SampleInfo& info = sample.info;
     Facts facts{{"calibrations", orNotSaid(info.calibrationId)},
                 {"certificate of the white reference", orNotSaid(info.referenceCertificate)},
-                {"its uncertainty", sizesOf(sample, "white")},
-                {"uncertainty of the lower reference", sizesOf(sample, "black reference")},
+                {"its uncertainty", sizesOf(sample, isWhite)},
+                {"uncertainty of the lower reference", sizesOf(sample, isLower)},
                 {"rig profile", orNotSaid(info.profileHash)},
                 {"drift while measuring", driftText(info)},
-                {"drift between captures", sizesOf(sample, "drift")}};
+                {"drift between captures", sizesOf(sample, isDrift)}};
     if (const auto check = info.extra.find("black_check"); check != info.extra.end())
         facts.emplace_back("black against the zero reference", check->second);
     return facts;

@@ -68,6 +68,14 @@ Asked askAt(const Scatterer& estimator,
     return asked;
 }
 
+/// The sample's, the middles between them, and one beyond the last.
+std::vector<Radians> askedIncidences(const SampleSet& sample) {
+    std::vector<Radians> all = incidencesOf(sample);
+    for (const Radians one : unmeasuredIncidences(sample)) all.push_back(one);
+    std::sort(all.begin(), all.end());
+    return all;
+}
+
 }  // namespace
 
 HtmlTable methodTable(const MethodChoice& choice) {
@@ -119,7 +127,8 @@ std::string priorSentence(const SamplePrior* prior) {
         const auto& gate = prior->gates()[index(band)];
         if (!gate) continue;
         double worst = 0;
-        for (const double one : gate->predicted) worst = std::max(worst, one);
+        for (const double one : gate->predicted)
+            worst = std::isnan(one) ? one : std::max(one, worst);
         bands += (bands.empty() ? "" : "; ") + bandName(band) + " " +
                  significant(gate->chiSquare, 3) + " and " + significant(worst, 3);
     }
@@ -129,13 +138,6 @@ std::string priorSentence(const SamplePrior* prior) {
            "at most " +
            significant(PriorGate::kMostPredicted, 1) + ", of the first and the last " +
            significant(PriorGate::kMostPredictedAtEnd, 1) + ": " + bands + ").";
-}
-
-std::vector<Radians> askedIncidences(const SampleSet& sample) {
-    std::vector<Radians> all = incidencesOf(sample);
-    for (const Radians one : unmeasuredIncidences(sample)) all.push_back(one);
-    std::sort(all.begin(), all.end());
-    return all;
 }
 
 std::vector<Radians> unmeasuredIncidences(const SampleSet& sample) {

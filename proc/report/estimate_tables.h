@@ -20,10 +20,8 @@ namespace gonio::proc {
 /// Whether the sample is like the prior's library, by band.
 [[nodiscard]] std::string priorSentence(const SamplePrior* prior);
 
-/// Incidences to ask at: the sample's, the middles between them, and one 10 degrees beyond the
-/// last, where that is below 85 degrees.
-[[nodiscard]] std::vector<Radians> askedIncidences(const SampleSet& sample);
-/// Those that were not measured.
+/// Incidences to ask at that were not measured: the middles between the sample's, and one 10
+/// degrees beyond the last, where that is below 85 degrees.
 [[nodiscard]] std::vector<Radians> unmeasuredIncidences(const SampleSet& sample);
 
 /// By incidence: shares of the hemisphere's solid angle by where the answers come from, and the

@@ -22,13 +22,11 @@ int decadeOf(double value, int digits) {
 
 /// Rounded at a decimal place, which may lie left of the point.
 std::string atDecimals(double value, int decimals) {
-    if (decimals >= 0) {
-        const std::string text = fixed(value, std::min(decimals, 15));
-        const bool zero = text.find_first_not_of("-0.") == std::string::npos;
-        return zero && text.front() == '-' ? text.substr(1) : text;
-    }
-    const double step = std::pow(10.0, -decimals);
-    return fixed(std::round(value / step) * step, 0);
+    const double step = decimals < 0 ? std::pow(10.0, -decimals) : 1;
+    const std::string text = decimals < 0 ? fixed(std::round(value / step) * step, 0)
+                                          : fixed(value, std::min(decimals, 15));
+    const bool zero = text.find_first_not_of("-0.") == std::string::npos;
+    return zero && text.front() == '-' ? text.substr(1) : text;
 }
 
 std::string exponent(int decade) { return "e" + std::to_string(decade); }
@@ -65,9 +63,14 @@ std::string relativeText(double fraction) {
     return text == "none" || text == "0" ? text : text + " %";
 }
 
+std::string sizeText(double size, const std::string& unit) {
+    return unit == "relative" ? relativeText(size) : significant(size, 2) + " " + unit;
+}
+
 std::string shareText(double fraction) {
     if (!std::isfinite(fraction)) return "none";
-    if (fraction <= 0) return "0";
+    constexpr double kRounding = 1e-9;  // of a sum over a hemisphere's cells
+    if (fraction < kRounding) return "0";
     if (fraction < 0.0005) return "< 0.1 %";
     return fixed(100 * fraction, 1) + " %";
 }

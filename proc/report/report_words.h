@@ -21,8 +21,11 @@ inline constexpr double kCoverageFactor = 2;  ///< k of U
 [[nodiscard]] std::string significant(double value, int digits);
 /// A share as per cent with two significant digits: "0.52 %"; "0" of none.
 [[nodiscard]] std::string relativeText(double fraction);
-/// A share of a whole, to a tenth of a per cent: "99.9 %"; "0" of none, "< 0.1 %" for what is less
-/// and not 0.
+/// The size of a budget's component with two significant digits: "0.52 %" of what is relative,
+/// else with its unit, "0.0021 1/sr".
+[[nodiscard]] std::string sizeText(double size, const std::string& unit);
+/// A share of a whole, to a tenth of a per cent: "99.9 %"; "0" of none (rounding below 1e-9 is
+/// none), "< 0.1 %" for what is less and not 0.
 [[nodiscard]] std::string shareText(double fraction);
 
 /// The words; "not said" for none.

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "proc/core/number_text.h"
+#include "proc/report/plot_request.h"
+
 namespace gonio::proc {
 
 std::vector<Band> measuredBands(const SampleSet& sample) {
@@ -21,6 +24,17 @@ std::vector<Radians> incidencesOf(const SampleSet& sample) {
     incidences.reserve(sample.leds.size());
     for (const LedTable& led : sample.leds) incidences.push_back(led.incidence);
     return incidences;
+}
+
+std::string turnLabel(Radians rotation) {
+    // Rotations differ by a hundredth of a degree at least (rotations.h).
+    const double thousandths = std::round(rotation.degrees() * 1000) / 1000;
+    return thousandths == 0 ? "" : "turned " + shortest(thousandths) + " deg";
+}
+
+std::string lightLabel(const LedTable& led) {
+    const std::string turn = turnLabel(led.rotation);
+    return degreesLabel(led.incidence) + (turn.empty() ? "" : ", " + turn);
 }
 
 std::vector<double> relativeUncertainties(const CellSamples& cells) {

@@ -1,5 +1,8 @@
 #include "proc/report/sample_report.h"
 
+#include "proc/estimate/sample_estimator.h"
+#include "proc/fit/selection.h"
+#include "proc/report/at_cell_centres.h"
 #include "proc/report/budget_tables.h"
 #include "proc/report/calibration_tables.h"
 #include "proc/report/estimate_tables.h"
@@ -13,19 +16,32 @@
 #include "proc/report/sample_cells.h"
 #include "proc/report/sample_tables.h"
 #include "proc/report/slice_plot.h"
+#include "proc/table/rotations.h"
+#include "proc/table/sample_lookup.h"
 
 namespace gonio::proc {
 namespace {
 
 /// What all parts go over.
 struct Reported {
-    const SampleLookup lookup;
+    const SampleSet set;  // by rotation and incidence
     const ReportOrigin& origin;
     const ReportEstimates& estimates;
 
-    [[nodiscard]] const SampleSet& sample() const { return lookup.set(); }
-    [[nodiscard]] bool measured() const { return !measuredBands(sample()).empty(); }
+    [[nodiscard]] const SampleSet& sample() const { return set; }
+    [[nodiscard]] bool measured() const { return !measuredBands(set).empty(); }
 };
+
+SampleSet sorted(SampleSet sample) {
+    sortTables(sample);
+    return sample;
+}
+
+/// "f as measured, turned 90 deg".
+std::string titled(const std::string& words, Radians rotation) {
+    const std::string turn = turnLabel(rotation);
+    return words + (turn.empty() ? "" : ", " + turn);
+}
 
 void addIdentity(HtmlPage& page, const Reported& what) {
     page.section("identity", "Identity");
@@ -84,30 +100,52 @@ void addVerdicts(HtmlPage& page, const Reported& what) {
     }
 }
 
-void addMaps(HtmlPage& page, const Reported& what) {
-    page.section("maps", "BRDF over the hemisphere");
-    const std::vector<Radians> incidences = incidencesOf(what.sample());
-    if (!what.measured()) {
-        page.paragraph("No band of any LED was measured: there is nothing to draw.");
-        return;
-    }
-    page.figure(
-        hemisphereMaps(what.lookup,
-                       {.title = "f as measured", .incidences = incidences, .embedded = true}),
-        "The reflected hemisphere from above, theta_o outward in equal steps to 90 "
-        "degrees; the light stands on the right (azimuth 0). f in 1/sr on one logarithmic "
-        "scale; grey is missing, which is never 0.");
-    page.figure(hemisphereMaps(RelativeUncertainty(what.lookup),
-                               {.title = "relative uncertainty",
+/// Of one rotation, in the rig's frame.
+void addMapsOf(HtmlPage& page, const SampleSet& part) {
+    const Radians rotation = part.leds.front().rotation;
+    const std::vector<Radians> incidences = incidencesOf(part);
+    const SampleLookup lookup(part);
+    const AtCellCentres cells(lookup);
+    page.figure(hemisphereMaps(cells,
+                               {.title = titled("f as measured", rotation),
+                                .incidences = incidences,
+                                .embedded = true}),
+                "The reflected hemisphere from above, theta_o outward in equal steps to 90 "
+                "degrees; the light stands on the right (azimuth 0). f in 1/sr on one logarithmic "
+                "scale, each cell as it was measured; grey is missing, which is never 0.");
+    page.figure(hemisphereMaps(RelativeUncertainty(cells),
+                               {.title = titled("relative uncertainty", rotation),
                                 .incidences = incidences,
                                 .quantity = "u / f, k = 1",
                                 .embedded = true}),
                 "Combined standard uncertainty (k = 1) over f, likewise.");
-    page.section("slices", "Plane of incidence");
-    page.figure(slicePlots(what.lookup, {.title = "f as measured", .incidences = incidences}),
-                "f in 1/sr through the plane of incidence: theta_o below 0 on the side of the "
-                "light (dotted), above 0 toward its mirror direction. Shaded: f +- U (k = 2, "
+}
+
+void addSlicesOf(HtmlPage& page, const SampleSet& part) {
+    const SampleLookup lookup(part);
+    page.figure(slicePlots(AtCellCentres(lookup),
+                           {.title = titled("f as measured", part.leds.front().rotation),
+                            .incidences = incidencesOf(part)}),
+                "f in 1/sr of the cells in the plane of incidence: theta_o below 0 on the side of "
+                "the light (dotted), above 0 toward its mirror direction. Shaded: f +- U (k = 2, "
                 "about 95 %). A gap is missing or not above 0.");
+}
+
+void addMaps(HtmlPage& page, const Reported& what) {
+    page.section("maps", "BRDF over the hemisphere");
+    if (!what.measured()) {
+        page.paragraph("No band of any LED was measured: there is nothing to draw.");
+        return;
+    }
+    const std::vector<Radians> rotations = rotationsOf(what.sample());
+    if (rotations.size() > 1) {
+        page.paragraph(
+            "The sample was turned on the stage between measurements: each rotation "
+            "has pictures of its own, as the rig saw it.");
+    }
+    for (const Radians one : rotations) addMapsOf(page, atRotation(what.sample(), one));
+    page.section("slices", "Plane of incidence");
+    for (const Radians one : rotations) addSlicesOf(page, atRotation(what.sample(), one));
 }
 
 void addReflectance(HtmlPage& page, const Reported& what) {
@@ -116,7 +154,10 @@ void addReflectance(HtmlPage& page, const Reported& what) {
     page.paragraph(
         "The share of the light of one direction that is sent back into all directions that were "
         "measured, with U (k = 2). The columns beside it say what share of the projected solid "
-        "angle has no answer: that adds nothing, so that the value is a lower bound.");
+        "angle has no answer: that adds nothing, so that the value is a lower bound. The mean is "
+        "of "
+        "light from all directions within the incidences; between them it follows a line in "
+        "sin^2(theta_i), which may be off by what stands beside it, to either side.");
     if (what.estimates.estimator != nullptr)
         page.table(filledAlbedoTable(what.sample(), *what.estimates.estimator));
 }
@@ -164,7 +205,7 @@ void addFits(HtmlPage& page, const Reported& what) {
 std::string sampleReport(SampleSet sample,
                          const ReportOrigin& origin,
                          const ReportEstimates& estimates) {
-    const Reported what{SampleLookup(std::move(sample)), origin, estimates};
+    const Reported what{sorted(std::move(sample)), origin, estimates};
     const std::string& name = what.sample().info.name;
     HtmlPage page("BRDF of " + (name.empty() ? std::string("a sample without a name") : name));
     addIdentity(page, what);

@@ -7,11 +7,13 @@
 
 #include <string>
 
-#include "proc/estimate/sample_estimator.h"
-#include "proc/fit/selection.h"
 #include "proc/report/report_origin.h"
+#include "proc/table/sample_set.h"
 
 namespace gonio::proc {
+
+class SampleEstimator;
+struct Selection;
 
 /// What was made of the sample; null where it was not, with the reason in one sentence.
 struct ReportEstimates {

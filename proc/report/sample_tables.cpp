@@ -11,15 +11,30 @@
 #include "proc/report/plot_request.h"
 #include "proc/report/report_words.h"
 #include "proc/report/sample_cells.h"
+#include "proc/table/rotations.h"
 
 namespace gonio::proc {
 namespace {
 
 std::string lightOf(const SampleSet& sample) {
+    std::vector<std::string> labels;
+    for (const LedTable& led : sample.leds) {
+        const std::string label = degreesLabel(led.incidence);
+        if (std::find(labels.begin(), labels.end(), label) == labels.end()) labels.push_back(label);
+    }
     std::string text;
-    for (const LedTable& led : sample.leds)
-        text += (text.empty() ? "" : ", ") + degreesLabel(led.incidence);
-    return text.empty() ? "none" : text + " from the normal, azimuth 0";
+    for (const std::string& label : labels) text += (text.empty() ? "" : ", ") + label;
+    return text.empty() ? "none" : text + " from the normal, azimuth 0 of the rig";
+}
+
+/// How the sample lay on the stage.
+std::string turnsOf(const SampleSet& sample) {
+    std::string text;
+    for (const Radians rotation : rotationsOf(sample)) {
+        const std::string label = turnLabel(rotation);
+        text += (text.empty() ? "" : ", ") + (label.empty() ? "not turned" : label);
+    }
+    return text.empty() ? "none" : text;
 }
 
 std::string bandsOf(const SampleSet& sample) {
@@ -99,26 +114,28 @@ std::string figureText(const Verdict& verdict) {
 
 Facts identityFacts(const SampleSet& sample, const ReportOrigin& origin) {
     const SampleInfo& info = sample.info;
-    Facts facts{{"sample", orNotSaid(info.name)},
-                {"measured (UTC)", orNotSaid(info.dateUtc)},
-                {"rig", orNotSaid(info.rigSerial)},
-                {"operator", orNotSaid(origin.operatorName)},
-                {"session", orNotSaid(info.session)},
-                {"notes", orNotSaid(info.operatorNotes)},
-                {"light", lightOf(sample)},
-                {"view", "to " + degreesLabel(fieldOf(sample)) + " from the normal, all azimuths"},
-                {"bands", bandsOf(sample)},
-                {"effort", orNotSaid(info.effort)},
-                {"relative uncertainty", wantedAndAchieved(info)},
-                {"checks", verdictSummary(sample)},
-                {"time",
-                 fixed(info.rigSeconds, 1) + " s on the rig, " + fixed(info.computeSeconds, 1) +
-                     " s of computing"},
-                {"interruptions", std::to_string(info.interruptions)},
-                {"measured by", orNotSaid(info.softwareVersion)},
-                {"file", origin.file},
-                {"SHA-256 of the file", orNotSaid(origin.digest)},
-                {"report made (UTC)", orNotSaid(origin.madeUtc) + " by " + origin.madeBy}};
+    Facts facts{
+        {"sample", orNotSaid(info.name)},
+        {"measured (UTC)", orNotSaid(info.dateUtc)},
+        {"rig", orNotSaid(info.rigSerial)},
+        {"operator", orNotSaid(origin.operatorName)},
+        {"session", orNotSaid(info.session)},
+        {"notes", orNotSaid(info.operatorNotes)},
+        {"light", lightOf(sample)},
+        {"sample on the stage", turnsOf(sample)},
+        {"view", "outermost value at " + degreesLabel(fieldOf(sample)) + " from the normal"},
+        {"bands", bandsOf(sample)},
+        {"effort", orNotSaid(info.effort)},
+        {"relative uncertainty", wantedAndAchieved(info)},
+        {"checks", verdictSummary(sample)},
+        {"time",
+         fixed(info.rigSeconds, 1) + " s on the rig, " + fixed(info.computeSeconds, 1) +
+             " s of computing"},
+        {"interruptions", std::to_string(info.interruptions)},
+        {"measured by", orNotSaid(info.softwareVersion)},
+        {"file", origin.file},
+        {"SHA-256 of the file", orNotSaid(origin.digest)},
+        {"report made (UTC)", orNotSaid(origin.madeUtc) + " by " + origin.madeBy}};
     if (!info.truthSpec.empty()) facts.emplace_back("lay under a simulated rig", info.truthSpec);
     return facts;
 }
@@ -128,7 +145,8 @@ Facts furtherFacts(const SampleSet& sample) {
     for (const auto& [key, words] : sample.info.extra) {
         const bool fraction = words.find('.') != std::string::npos;
         const auto number = fraction ? parseDouble(words) : std::nullopt;
-        facts.emplace_back(key, number ? significant(*number, 4) : words);
+        const std::string cut = number ? significant(*number, 4) : words;
+        facts.emplace_back(key, cut.size() < words.size() ? cut : words);
     }
     return facts;
 }
@@ -155,8 +173,7 @@ HtmlTable coverageTable(const SampleSet& sample) {
         for (const Band band : kBands) {
             const CellSamples* cells = cellsOf(led, band);
             if (cells == nullptr) continue;
-            states.emplace_back(degreesLabel(led.incidence) + ", " + bandName(band),
-                                sharesOf(*cells));
+            states.emplace_back(lightLabel(led) + ", " + bandName(band), sharesOf(*cells));
             for (std::size_t i = 0; i < any.flags.size(); ++i)
                 any.flags[i] += states.back().second.flags[i];
         }

@@ -10,7 +10,7 @@ namespace gonio::proc {
 
 [[nodiscard]] Facts identityFacts(const SampleSet& sample, const ReportOrigin& origin);
 
-/// What else the file carries, by its own names; long numbers are cut to four digits.
+/// What else the file carries, by its own names; numbers of more digits are cut to four.
 [[nodiscard]] Facts furtherFacts(const SampleSet& sample);
 
 /// A verdict's figure with U (k = 2) where its u is known; empty where it has none.

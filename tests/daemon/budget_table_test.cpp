@@ -32,8 +32,10 @@ Json state(double whiteMedian) {
                {"freedom", 58}}}}};
 }
 
+std::string tableOf(const Json& budget) { return budgetTable(proc::readBudget(budget.dump())); }
+
 TEST(BudgetTable, HasALineForEachComponentWithMediansOverTheStates) {
-    const std::string table = budgetTable(Json::array({state(0.004), state(0.005), state(0.006)}));
+    const std::string table = tableOf(Json::array({state(0.004), state(0.005), state(0.006)}));
     EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 3) << table;
     EXPECT_NE(table.find("white reference, common                 B     common"), std::string::npos)
         << table;
@@ -48,15 +50,14 @@ TEST(BudgetTable, ABudgetOfBeforeHasNoSizes) {
     for (Json& component : old["components"]) {
         for (const char* key : {"size", "unit", "sensitivity", "freedom"}) component.erase(key);
     }
-    const std::string table = budgetTable(Json::array({old}));
+    const std::string table = tableOf(Json::array({old}));
     EXPECT_NE(table.find("0.400 %"), std::string::npos) << table;
     EXPECT_EQ(table.find("0.500 %"), std::string::npos) << table;
 }
 
 TEST(BudgetTable, OfNothingIsEmpty) {
-    EXPECT_EQ(budgetTable(Json::array()), "");
-    EXPECT_EQ(budgetTable(Json()), "");
-    EXPECT_EQ(budgetTable(Json("broken")), "");
+    EXPECT_EQ(budgetTable({}), "");
+    EXPECT_EQ(tableOf(Json("broken")), "");
 }
 
 }  // namespace

@@ -19,6 +19,7 @@ TEST(ReportWords, AValueHasNoMoreDigitsThanItsExpandedUncertaintyAllows) {
     EXPECT_EQ(withExpanded(3.1e-4, 3.3e-5), "(3.10" + kPm + "0.66)e-4");
     EXPECT_EQ(withExpanded(2.5e7, 1e6), "(2.50" + kPm + "0.20)e7");
     EXPECT_EQ(withExpanded(-0.0001, 0.01), "0.000" + kPm + "0.020") << "no minus nothing";
+    EXPECT_EQ(withExpanded(-3, 170), "0" + kPm + "340") << "nor left of the point";
     EXPECT_EQ(withExpanded(1e-9, 0.5), "0.0" + kPm + "1.0");
 }
 
@@ -40,6 +41,7 @@ TEST(ReportWords, SharesAndSignificantDigits) {
     EXPECT_EQ(shareText(1e-5), "< 0.1 %");
     EXPECT_EQ(shareText(0), "0");
     EXPECT_EQ(shareText(-1e-16), "0");
+    EXPECT_EQ(shareText(1e-10), "0") << "rounding of a sum";
     EXPECT_EQ(significant(123456, 2), "120000");
     EXPECT_EQ(significant(1.5e12, 2), "1.5e12");
     EXPECT_EQ(significant(3.2e-6, 2), "3.2e-6");

@@ -6,8 +6,13 @@
 
 #include "proc/core/number_text.h"
 #include "proc/estimate/sample_albedo.h"
+#include "proc/estimate/sample_estimator.h"
+#include "proc/fit/selection.h"
 #include "proc/quality/verdict.h"
+#include "proc/report/calibration_tables.h"
+#include "proc/report/reflectance_tables.h"
 #include "proc/report/report_words.h"
+#include "tests/estimate/scatterers.h"
 #include "tests/report/html.h"
 #include "tests/support/sample_sets.h"
 
@@ -31,13 +36,16 @@ SampleSet tile() {
     set.info.dateUtc = "2026-01-02T03:04:05Z";
     set.info.rigSerial = "SIM-0007";
     set.info.calibrationId = "1+2+3";
-    set.info.extra = {{"chi_square_per_freedom", "1.0228026802"}, {"seed", "7"}};
+    set.info.extra = {
+        {"chi_square_per_freedom", "1.0228026802"}, {"made_with", "1.10"}, {"seed", "7"}};
     set.info.budgetJson =
         R"([{"led":0,"band":"r","monte_carlo_cells":12,"components":[)"
         R"({"name":"white reference, common","type":"B","correlation":"common",)"
         R"("median_relative":0.006,"size":0.005,"unit":"relative","freedom":null},)"
         R"({"name":"direction of the cell","type":"A","correlation":"per state",)"
-        R"("median_relative":0.008,"size":0.004,"unit":"degree","freedom":10}]}])";
+        R"("median_relative":0.008,"size":0.004,"unit":"degree","freedom":10}]},)"
+        R"({"led":0,"band":"g","components":[{"name":"white reference, common","type":"B",)"
+        R"("correlation":"common","median_relative":0.006,"size":0.005,"unit":"relative"}]}])";
     const std::vector<Verdict> verdicts{
         {.name = "tilt",
          .grade = Grade::Warned,
@@ -78,6 +86,14 @@ std::vector<std::string> rowOf(const Xml& xml, const std::string& head) {
     return cells;
 }
 
+/// Pieces of curves in the slices.
+std::size_t curvesOf(const Xml& xml) {
+    std::size_t curves = 0;
+    for (const test::XmlElement& line : xml.all("polyline"))
+        curves += static_cast<std::size_t>(line.at("stroke-width") == "1.4");
+    return curves;
+}
+
 TEST(SampleReport, SaysWhatTheFileSays) {
     const SampleSet set = tile();
     const Xml xml = readHtml(reportOf(set));
@@ -86,9 +102,11 @@ TEST(SampleReport, SaysWhatTheFileSays) {
     EXPECT_EQ(rowOf(xml, "SHA-256 of the file"), std::vector<std::string>{"ab12"});
     EXPECT_EQ(rowOf(xml, "operator"), std::vector<std::string>{"Ada"});
     EXPECT_EQ(rowOf(xml, "view"),
-              std::vector<std::string>{"to 75 deg from the normal, all azimuths"});
+              std::vector<std::string>{"outermost value at 75 deg from the normal"});
     EXPECT_EQ(rowOf(xml, "checks"), std::vector<std::string>{"1 warned"});
+    EXPECT_EQ(rowOf(xml, "sample on the stage"), std::vector<std::string>{"not turned"});
     EXPECT_EQ(rowOf(xml, "chi_square_per_freedom"), std::vector<std::string>{"1.023"});
+    EXPECT_EQ(rowOf(xml, "made_with"), std::vector<std::string>{"1.10"}) << "no digit is added";
     EXPECT_EQ(
         rowOf(xml, "white"),
         (std::vector<std::string>{"3", "2026-01-01T00:00:00Z", "27.1 h", "26.2 degC", "other"}));
@@ -101,18 +119,91 @@ TEST(SampleReport, SaysWhatTheFileSays) {
     // 0.6 and 0.8 % are 1.0 % together; 0.36 and 0.64 of the variance; 10 / 0.64^2 = 24.4.
     EXPECT_EQ(rowOf(xml, "white reference, common"),
               (std::vector<std::string>{
-                  "B", "common", "0.50 %", "0.60 %", "not known", "not known", "36.0 %", "many"}));
-    EXPECT_EQ(rowOf(xml, "combined, k = 1").at(3), "1.0 %");
-    EXPECT_EQ(rowOf(xml, "expanded, k = 2 (about 95 %)").at(3), "2.0 %");
-    EXPECT_EQ(rowOf(xml, "effective degrees of freedom").at(3), "24");
+                  "B", "common", "0.50 %", "0.60 %", "0.60 %", "not known", "36.0 %", "many"}));
+    // Of green one component is known, of blue none.
+    const auto expectTotal = [&](const char* head, const std::vector<std::string>& bands) {
+        std::vector<std::string> row{"", "", ""};
+        row.insert(row.end(), bands.begin(), bands.end());
+        row.insert(row.end(), 2, "");
+        EXPECT_EQ(rowOf(xml, head), row);
+    };
+    expectTotal("combined, k = 1", {"1.0 %", "at least 0.60 %", "not known"});
+    expectTotal("expanded, k = 2 (about 95 %)", {"2.0 %", "at least 1.2 %", "not known"});
+    expectTotal("effective degrees of freedom", {"24", "not known", "not known"});
     // Two tables have rows of 40 degrees: uncertainties, albedo.
     const Albedo albedo = directionalAlbedo(set.leds[2]);
     const BandAlbedo& green = albedo[Band::G];
     EXPECT_EQ(rowOf(xml, "40 deg").at(5), withExpanded(green.value, green.u()));
     EXPECT_EQ(rowOf(xml, "40 deg").at(6), shareText(green.missing));
+    const BandAlbedo mean = meanAlbedo(set)[Band::R];
+    ASSERT_GT(mean.errorBound, 0);
+    EXPECT_EQ(
+        rowOf(xml, "bihemispherical mean").at(0),
+        withExpanded(mean.value, mean.u()) + ", line within " + significant(mean.errorBound, 2));
     EXPECT_NE(wordsOf(xml).find("in 12 cells"), std::string::npos);
     EXPECT_EQ(xml.all("svg").size(), 3U);
     EXPECT_LT(reportOf(set).size(), 1'500'000U);
+}
+
+TEST(SampleReport, OfATurnedSampleShowsEachRotation) {
+    SampleSet set;
+    for (const double rotationDeg : {45.0, 90.0}) {
+        for (const Radians incidence : {0_deg, 20_deg}) {
+            set.leds.push_back(test::ledTable(
+                incidence, [=](Radians, const Direction&) { return rotationDeg / 900; }));
+            set.leds.back().rotation = Radians::fromDegrees(rotationDeg);
+        }
+    }
+    const Xml xml = readHtml(reportOf(set));
+    EXPECT_EQ(rowOf(xml, "light").at(0), "0 deg, 20 deg from the normal, azimuth 0 of the rig");
+    EXPECT_EQ(rowOf(xml, "sample on the stage").at(0), "turned 45 deg, turned 90 deg");
+    for (const std::size_t led : {1U, 3U}) {
+        const std::string turn = led == 1 ? "turned 45 deg" : "turned 90 deg";
+        const BandAlbedo red = directionalAlbedo(set.leds[led])[Band::R];
+        EXPECT_EQ(rowOf(xml, "20 deg, " + turn).at(3), withExpanded(red.value, red.u()));
+        EXPECT_EQ(rowOf(xml, "20 deg, " + turn + ", R 630 nm").size(), 3U) << "coverage";
+        // Both sides of the view, which the normal tells from nothing.
+        EXPECT_EQ(rowOf(xml, "0 deg and 20 deg, " + turn).size(), 2U * 4);
+    }
+    // f and u / f of each rotation, then the slices: a curve for each LED and band.
+    EXPECT_EQ(xml.all("svg").size(), 2U * 3);
+    EXPECT_EQ(curvesOf(xml), 2U * 2 * 3);
+}
+
+TEST(SampleReport, CalibrationsAreThoseOfTheBudgetAndOfAnyAge) {
+    SampleSet set;
+    for (const char* drift : {"0.001", "0.002", "0.006"}) {
+        set.info.budgetJson +=
+            std::string(set.info.budgetJson.empty() ? "[" : ",") +
+            R"({"led":0,"band":"r","components":[)"
+            R"({"name":"noise of the zero reference's frames","type":"A","size":0.1},)"
+            R"({"name":"white reference, common","type":"B","size":0.005},)"
+            R"({"name":"zero reference","type":"B","size":0.00021,"unit":"1/sr"},)"
+            R"({"name":"LED drift","type":"B","size":)" +
+            drift + "}]}";
+    }
+    set.info.budgetJson += "]";
+    const Facts facts = calibrationFacts(set);
+    const auto said = [&](const std::string& what) {
+        for (const auto& [name, words] : facts) {
+            if (name == what) return words;
+        }
+        return std::string();
+    };
+    EXPECT_EQ(said("its uncertainty"), "white reference, common 0.50 % (k = 1)");
+    EXPECT_EQ(said("uncertainty of the lower reference"), "zero reference 0.00021 1/sr (k = 1)");
+    EXPECT_EQ(said("drift between captures"), "LED drift 0.20 % (k = 1)") << "the median";
+    ReportOrigin later = origin();
+    later.calibrations[0].ageHours = -72;
+    EXPECT_EQ(calibrationTable(set, later).rows.at(0).at(3).words,
+              "3.0 days after the measurement");
+}
+
+TEST(SampleReport, WhatIsFilledWhollyLacksNothing) {
+    SampleSet set;
+    set.leds.push_back(test::ledTable(20_deg, [](Radians, const Direction&) { return 0.3 / kPi; }));
+    const test::Made lambert([](const LightView&) { return test::answerOf(0.3 / kPi); });
+    EXPECT_EQ(filledAlbedoTable(set, lambert).rows.at(0).at(2).words, "0");
 }
 
 TEST(SampleReport, HostileNamesAreEscaped) {
@@ -173,6 +264,7 @@ TEST(SampleReport, OfOneLedOneBandOrOneCellIsWhole) {
     cells.flags[0] = kept.flags;
     const Xml cell = readHtml(reportOf(one));
     EXPECT_EQ(rowOf(cell, "20 deg, G 525 nm").at(0), "< 0.1 %");
+    EXPECT_EQ(curvesOf(cell), 1U) << "a cell is drawn without its neighbours";
     const auto estimator = SampleEstimator::over(one, {});
     ASSERT_TRUE(estimator) << estimator.error().message;
     const Selection fits = selectModel(*familiesNamed("lambert,lambert+ggx"), fitDataOf(one));

@@ -95,5 +95,63 @@ TEST_F(OnASample, AnAlbedoIsTheSumOverItsCells) {
     expectRefused({"albedo", file, "--estimator", "none", "--incidences", "10"}, 2, {"leave"});
 }
 
+TEST_F(OnASample, AnAlbedoIsOfEachRotation) {
+    proc::SampleSet set;
+    for (const double rotationDeg : {45.0, 90.0}) {
+        for (const Radians incidence : {0_deg, 30_deg, 60_deg}) {
+            set.leds.push_back(test::ledTable(
+                incidence, [&](Radians, const Direction&) { return kF * rotationDeg / 90; }));
+            set.leds.back().rotation = Radians::fromDegrees(rotationDeg);
+        }
+    }
+    EXPECT_TRUE(proc::writeGonio(file, set));
+    const double seen = std::pow(std::sin(75 * M_PI / 180), 2);
+    const Json cells = documentOf(gonio, {"albedo", file, "--estimator", "none"})["rows"];
+    ASSERT_EQ(cells.size(), 7U);
+    EXPECT_EQ(cells[2]["rotation_deg"], 45);
+    EXPECT_EQ(cells[2]["incidence_deg"], 60);
+    EXPECT_EQ(cells[5]["rotation_deg"], 90);
+    EXPECT_TRUE(cells[6]["rotation_deg"].is_null());
+    // At azimuth 0 no rotation stood; the rotations' own have half of it and all.
+    const Json asked = documentOf(gonio,
+                                  {"albedo",
+                                   file,
+                                   "--estimator",
+                                   "specular-log",
+                                   "--incidences",
+                                   "30",
+                                   "--effort",
+                                   "draft"})["rows"];
+    ASSERT_EQ(asked.size(), 3U);
+    const auto red = [&](std::size_t row) {
+        return asked[row]["bands"]["r"]["albedo"].get<double>();
+    };
+    EXPECT_EQ(asked[1]["rotation_deg"], 90);
+    EXPECT_GT(red(1), M_PI * kF * seen);
+    EXPECT_NEAR(red(0) / red(1), 0.5, 1e-3);
+    EXPECT_NEAR(red(2) / red(1), 0.75, 0.01) << "the mean is over both";
+
+    const Ran shown = gonio({"report", file, "-o", page, "--models", "none"});
+    EXPECT_EQ(shown.exitCode, 0) << shown.err;
+    EXPECT_NE(test::textOf(page).find("measured at several rotations"), std::string::npos);
+}
+
+TEST_F(OnASample, InfoStandsABudgetThatIsNone) {
+    proc::SampleSet set;
+    set.leds.push_back(test::ledTable(20_deg, [](Radians, const Direction&) { return kF; }));
+    for (const char* broken :
+         {"banana",
+          R"([1,{"led":-1},{"led":0,"band":"x"},{"led":0,"band":"r","components":[3,)"
+          R"({"name":"white","median_relative":"x","size":[],"freedom":{}}]}])"}) {
+        set.info.budgetJson = broken;
+        EXPECT_TRUE(proc::writeGonio(file, set));
+        const Json told = documentOf(gonio, {"info", file});
+        EXPECT_TRUE(told["budget"].is_array()) << broken;
+        const Ran plain = gonio({"info", file});
+        EXPECT_EQ(plain.exitCode, 0) << broken << plain.err;
+    }
+    EXPECT_EQ(documentOf(gonio, {"info", file})["budget"][0]["components"].size(), 1U);
+}
+
 }  // namespace
 }  // namespace gonio
