@@ -6,14 +6,11 @@
 #include "daemon/merge_checks.h"
 #include "daemon/merge_verdicts.h"
 #include "proc/core/number_text.h"
-#include "proc/formats/file_degrees.h"
 #include "proc/table/achieved.h"
 #include "proc/table/merged_info.h"
 
 namespace gonio::daemon {
 namespace {
-
-std::string degrees(Radians angle) { return shortest(proc::fileDegrees(angle)); }
 
 /// R, G, B of three inputs; a Usage error where they are not that.
 Result<std::array<const MergeInput*, 3>> bandsOf(const std::vector<MergeInput>& inputs) {

@@ -4,6 +4,9 @@
 #include <sstream>
 #include <vector>
 
+#include "proc/core/number_text.h"
+#include "proc/formats/file_degrees.h"
+
 namespace gonio::daemon {
 namespace {
 
@@ -25,6 +28,8 @@ bool holds(const std::vector<std::string>& list, const std::string& one) {
 Error mergeError(const std::string& what) { return {ErrorKind::Usage, "merge: " + what}; }
 
 std::string quoted(const MergeInput& input) { return "'" + input.file + "'"; }
+
+std::string degrees(Radians angle) { return shortest(proc::fileDegrees(angle)); }
 
 Result<void> checkBands(std::span<const MergeInput> inputs) {
     for (const MergeInput& input : inputs) {

@@ -13,6 +13,8 @@ namespace gonio::daemon {
 [[nodiscard]] Error mergeError(const std::string& what);
 
 [[nodiscard]] std::string quoted(const MergeInput& input);
+/// As files have it.
+[[nodiscard]] std::string degrees(Radians angle);
 
 /// All of these are of samples. Usage error unless all hold the same bands.
 [[nodiscard]] Result<void> checkBands(std::span<const MergeInput> inputs);

@@ -7,6 +7,7 @@
 #include "daemon/material.h"
 #include "proc/core/log.h"
 #include "proc/core/number_text.h"
+#include "proc/formats/flag_column.h"
 #include "proc/formats/points_csv.h"
 #include "proc/table/scattered_of.h"
 
@@ -78,27 +79,6 @@ Result<std::vector<double>> columnOr(const proc::Points& points, const std::stri
     return proc::numbersOf(points, name);
 }
 
-/// What the column of masks says of each row; empty where there is none.
-Result<std::vector<Flags>> flagsOf(const proc::Points& points) {
-    const auto masks = columnOr(points, "flags");
-    if (!masks) return masks.error();
-    std::vector<Flags> flags;
-    for (const double mask : *masks) {
-        if (!(mask >= 0 && mask < 1 << kFlagCount && mask == std::floor(mask))) {
-            return Error{ErrorKind::File,
-                         "csv: data row " + std::to_string(flags.size() + 1) +
-                             ": flags: " + shortest(mask) + ", wanted a mask of " +
-                             std::to_string(kFlagCount) + " flags"};
-        }
-        flags.push_back(Flags::fromMask(static_cast<std::uint32_t>(mask)));
-    }
-    return flags;
-}
-
-bool isLost(Flags flags) {
-    return flags.has(Flag::Saturated) || flags.has(Flag::Blocked) || flags.has(Flag::BelowHorizon);
-}
-
 Result<proc::ScatteredSet> valuesOf(const std::string& file, const proc::Points& points) {
     const auto has = [&](const char* name) {
         return std::find(points.columns.begin(), points.columns.end(), name) !=
@@ -112,7 +92,8 @@ Result<proc::ScatteredSet> valuesOf(const std::string& file, const proc::Points&
     if (!random) return random.error().in("merge: '" + file + "'");
     const auto systematic = columnOr(points, split ? "u_systematic" : "");
     if (!systematic) return systematic.error().in("merge: '" + file + "'");
-    const auto flags = flagsOf(points);
+    const auto flags = has("flags") ? proc::flagsOf(points, "flags")
+                                    : Result<std::vector<Flags>>(std::vector<Flags>{});
     if (!flags) return flags.error().in("merge: '" + file + "'");
     proc::ScatteredSet set(proc::PairSymmetry::None, BandCount::One);
     std::vector<proc::ScatteredSample> samples;
@@ -123,7 +104,7 @@ Result<proc::ScatteredSet> valuesOf(const std::string& file, const proc::Points&
         proc::ScatteredSample sample{
             .pair = pair, .f = LedBands::all((*f)[i]), .uRandom = {}, .uSystematic = {}};
         if (i < flags->size()) {
-            if (isLost((*flags)[i])) continue;
+            if (proc::isLost((*flags)[i])) continue;
             sample.flags = (*flags)[i];
         }
         const auto known = [&](const std::vector<double>& column) {

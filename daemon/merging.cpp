@@ -6,8 +6,6 @@
 #include "daemon/channel_merging.h"
 #include "daemon/merge_checks.h"
 #include "daemon/merge_verdicts.h"
-#include "proc/core/number_text.h"
-#include "proc/formats/file_degrees.h"
 #include "proc/quality/reciprocity.h"
 #include "proc/quality/symmetry.h"
 #include "proc/table/achieved.h"
@@ -18,8 +16,6 @@
 
 namespace gonio::daemon {
 namespace {
-
-std::string degrees(Radians rotation) { return shortest(proc::fileDegrees(rotation)); }
 
 /// One rotation of one file.
 struct Capture {

@@ -7,6 +7,7 @@
 
 #include "proc/core/number_text.h"
 #include "proc/fit/data_maker.h"
+#include "proc/formats/flag_column.h"
 
 namespace gonio::proc {
 namespace {
@@ -80,27 +81,6 @@ struct ScatteredColumns {
     }
 };
 
-/// Saturated, blocked or below the horizon, by a column of masks.
-Result<std::vector<bool>> flaggedOut(const Points& points, const std::string& column) {
-    const Result<std::vector<double>> masks = numbersOf(points, column);
-    if (!masks) return masks.error();
-    std::vector<bool> out;
-    for (std::size_t i = 0; i < masks->size(); ++i) {
-        const double mask = (*masks)[i];
-        const bool whole = mask >= 0 && mask < 1 << kFlagCount && mask == std::floor(mask);
-        if (!whole) {
-            return Error{ErrorKind::File,
-                         "csv: data row " + std::to_string(i + 1) + ": " + column + ": " +
-                             shortest(mask) + ", wanted a mask of " + std::to_string(kFlagCount) +
-                             " flags"};
-        }
-        const Flags flags = Flags::fromMask(static_cast<std::uint32_t>(mask));
-        out.push_back(flags.has(Flag::Saturated) || flags.has(Flag::Blocked) ||
-                      flags.has(Flag::BelowHorizon));
-    }
-    return out;
-}
-
 Result<ScatteredColumns> columnsOf(const Points& points) {
     ScatteredColumns all;
     all.bands = hasColumn(points, "f_r") ? BandCount::Three : BandCount::One;
@@ -135,9 +115,10 @@ Result<ScatteredColumns> columnsOf(const Points& points) {
                          "flags_b beside f_r, f_g, f_b"};
     }
     for (const std::string& name : flags) {
-        auto out = flaggedOut(points, name);
-        if (!out) return out.error();
-        all.out.push_back(std::move(*out));
+        const auto masks = flagsOf(points, name);
+        if (!masks) return masks.error();
+        std::vector<bool>& out = all.out.emplace_back();
+        for (const Flags one : *masks) out.push_back(isLost(one));
     }
     return all;
 }
