@@ -51,6 +51,7 @@ Result<void> addEstimator(Estimates& all, const Material& material, const std::s
     if (!made) return made.error();
     all.estimated = std::move(*made);
     all.shown.estimator = all.estimated.sample;
+    all.shown.surface = all.estimated.scatterer.get();
     if (all.shown.estimator != nullptr) return {};
     all.shown.noEstimator =
         proc::rotationsOf(*material.sample).size() > 1

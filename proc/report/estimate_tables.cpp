@@ -128,7 +128,7 @@ std::string priorSentence(const SamplePrior* prior) {
         if (!gate) continue;
         double worst = 0;
         for (const double one : gate->predicted)
-            worst = std::isnan(one) ? one : std::max(one, worst);
+            worst = std::isnan(one) ? one : std::max(worst, one);
         bands += (bands.empty() ? "" : "; ") + bandName(band) + " " +
                  significant(gate->chiSquare, 3) + " and " + significant(worst, 3);
     }

@@ -158,8 +158,8 @@ void addReflectance(HtmlPage& page, const Reported& what) {
         "of "
         "light from all directions within the incidences; between them it follows a line in "
         "sin^2(theta_i), which may be off by what stands beside it, to either side.");
-    if (what.estimates.estimator != nullptr)
-        page.table(filledAlbedoTable(what.sample(), *what.estimates.estimator));
+    if (what.estimates.surface != nullptr)
+        page.table(filledAlbedoTable(what.sample(), *what.estimates.surface));
 }
 
 void addCoverage(HtmlPage& page, const Reported& what) {

@@ -7,6 +7,7 @@
 
 #include <string>
 
+#include "proc/core/scatterer.h"
 #include "proc/report/report_origin.h"
 #include "proc/table/sample_set.h"
 
@@ -19,6 +20,8 @@ struct Selection;
 struct ReportEstimates {
     const SampleEstimator* estimator = nullptr;
     std::string noEstimator;
+    /// Fills in what is missing of the reflectance; any estimator, in the sample's own frame.
+    const Scatterer* surface = nullptr;
     const Selection* fits = nullptr;
     std::string noFits;
 };

@@ -268,8 +268,12 @@ TEST(SampleReport, OfOneLedOneBandOrOneCellIsWhole) {
     const auto estimator = SampleEstimator::over(one, {});
     ASSERT_TRUE(estimator) << estimator.error().message;
     const Selection fits = selectModel(*familiesNamed("lambert,lambert+ggx"), fitDataOf(one));
-    const Xml made = readHtml(sampleReport(
-        one, origin(), {.estimator = estimator->get(), .noEstimator = {}, .fits = &fits}));
+    const Xml made = readHtml(sampleReport(one,
+                                           origin(),
+                                           {.estimator = estimator->get(),
+                                            .noEstimator = {},
+                                            .surface = estimator->get(),
+                                            .fits = &fits}));
     EXPECT_NE(wordsOf(made).find("Too few incidences"), std::string::npos);
     EXPECT_EQ(rowOf(made, "lambert").at(0), "too few data");
 
@@ -285,8 +289,12 @@ TEST(SampleReport, ShowsTheMethodAndTheFits) {
     const auto families = familiesNamed("lambert");
     ASSERT_TRUE(families);
     const Selection fits = selectModel(*families, fitDataOf(set));
-    const Xml xml = readHtml(sampleReport(
-        set, origin(), {.estimator = estimator->get(), .noEstimator = {}, .fits = &fits}));
+    const Xml xml = readHtml(sampleReport(set,
+                                          origin(),
+                                          {.estimator = estimator->get(),
+                                           .noEstimator = {},
+                                           .surface = estimator->get(),
+                                           .fits = &fits}));
     const std::string words = wordsOf(xml);
     EXPECT_NE(words.find("Between the incidences: specular-log"), std::string::npos);
     EXPECT_NE(words.find("prior was not asked"), std::string::npos);
