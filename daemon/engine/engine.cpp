@@ -126,6 +126,7 @@ Result<void> Engine::proceed(std::int64_t job, std::uint64_t question) {
                              ": " + asked.wanted};
         }
         if (wish_ == Wish::None) wish_ = Wish::Proceed;
+        status_.job->question.reset();  // who looks now must not take it for the next one
     }
     asked_.notify_all();
     return {};

@@ -372,6 +372,9 @@ TEST_F(EngineOnRig, JobWaitsForAPersonAndGoesOnWhenItIsDone) {
 
     EXPECT_EQ(engine->proceed(id + 1, asked.id).error().kind, ErrorKind::Usage);
     ASSERT_TRUE(engine->proceed(id, asked.id));
+    const auto running = engine->status().job;
+    ASSERT_TRUE(running);
+    EXPECT_FALSE(running->question && running->question->number == asked.id) << "it is answered";
     const auto events = watcher.until("operator");  // the next wedge
     EXPECT_EQ(events.front().type, "progress");
     EXPECT_NE(Json::parse(events.back().data)["wanted"], first["wanted"]);
