@@ -7,6 +7,7 @@
 
 #include "proc/core/parallel.h"
 #include "proc/optics/cell_grid.h"
+#include "proc/table/merged_info.h"
 #include "proc/table/rotations.h"
 
 namespace gonio::proc {
@@ -209,7 +210,7 @@ Albedo meanAlbedo(const SampleSet& sample) {
     const std::vector<Radians> rotations = rotationsOf(sample);
     if (rotations.size() > 1) {
         std::vector<Albedo> each;
-        for (const Radians one : rotations) each.push_back(meanAlbedo(atRotation(sample, one)));
+        for (const Radians one : rotations) each.push_back(meanAlbedo(tablesAt(sample, one)));
         return averagedAlbedo(each);
     }
     std::vector<Albedo> leds;

@@ -123,12 +123,11 @@ SampleEstimator::SampleEstimator(std::shared_ptr<const Scatterer> measured,
                                  BrdfData data,
                                  SampleEstimatorOptions options)
     : measured_(std::move(measured)),
+      sample_(dynamic_cast<const SampleLookup*>(measured_.get())),
       options_(std::move(options)),
       data_(std::move(data)),
       coverage_(data_, std::vector<bool>(data_.incidences.size(), true)) {
-    if (const auto* sample = dynamic_cast<const SampleLookup*>(measured_.get())) {
-        corrections_ = correctionsOf(sample->set());
-    }
+    if (sample_ != nullptr) corrections_ = correctionsOf(sample_->set());
 }
 
 Result<std::unique_ptr<const SampleEstimator>> SampleEstimator::over(
@@ -216,14 +215,13 @@ std::array<bool, 3> SampleEstimator::measuredBands(const LightView& pair) const 
     const auto at = [&](Radians incidence) {
         return std::abs((incidence - pair.in.theta()).degrees()) < kSame;
     };
-    const auto* sample = dynamic_cast<const SampleLookup*>(measured_.get());
-    if (sample == nullptr) {
+    if (sample_ == nullptr) {
         const bool any = std::any_of(data_.incidences.begin(), data_.incidences.end(), at);
         return {any, any, any};
     }
     std::array<bool, 3> usable{};
     const auto cell = CellGrid::cellAt(pair.out.turned(-pair.in.phi()));
-    for (const LedTable& led : sample->set().leds) {
+    for (const LedTable& led : sample_->set().leds) {
         if (!cell || !at(led.incidence)) continue;
         for (std::size_t b = 0; b < 3; ++b) usable[b] = led.bands[b].usable(*cell);
     }

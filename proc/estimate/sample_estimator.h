@@ -79,6 +79,7 @@ private:
     [[nodiscard]] std::array<bool, 3> measuredBands(const LightView& pair) const;
 
     std::shared_ptr<const Scatterer> measured_;
+    const SampleLookup* sample_;  ///< the same, where it is one; else null
     SampleEstimatorOptions options_;
     BrdfData data_;
     Coverage coverage_;

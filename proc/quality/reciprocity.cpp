@@ -4,6 +4,7 @@
 
 #include "proc/core/median.h"
 #include "proc/core/number_text.h"
+#include "proc/table/merged_info.h"
 #include "proc/table/rotations.h"
 #include "proc/table/sample_lookup.h"
 
@@ -50,7 +51,7 @@ std::vector<ReciprocalPair> reciprocalPairs(const SampleSet& sample) {
     if (rotations.size() > 1) {
         std::vector<ReciprocalPair> all;
         for (const Radians rotation : rotations) {
-            const auto part = reciprocalPairs(atRotation(sample, rotation));
+            const auto part = reciprocalPairs(tablesAt(sample, rotation));
             all.insert(all.end(), part.begin(), part.end());
         }
         return all;

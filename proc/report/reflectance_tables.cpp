@@ -10,6 +10,7 @@
 #include "proc/report/plot_request.h"
 #include "proc/report/report_words.h"
 #include "proc/report/sample_cells.h"
+#include "proc/table/merged_info.h"
 #include "proc/table/rotations.h"
 
 namespace gonio::proc {
@@ -105,7 +106,7 @@ HtmlTable reciprocityTable(const SampleSet& sample) {
                     .rows = {}};
     for (const Band band : bands) table.head.push_back(bandName(band));
     for (const Radians rotation : rotationsOf(sample)) {
-        SampleSet part = atRotation(sample, rotation);
+        SampleSet part = tablesAt(sample, rotation);
         sortTables(part);  // as the pairs number its LEDs
         addPairs(table, part, bands);
     }

@@ -16,6 +16,7 @@
 #include "proc/report/sample_cells.h"
 #include "proc/report/sample_tables.h"
 #include "proc/report/slice_plot.h"
+#include "proc/table/merged_info.h"
 #include "proc/table/rotations.h"
 #include "proc/table/sample_lookup.h"
 
@@ -143,9 +144,9 @@ void addMaps(HtmlPage& page, const Reported& what) {
             "The sample was turned on the stage between measurements: each rotation "
             "has pictures of its own, as the rig saw it.");
     }
-    for (const Radians one : rotations) addMapsOf(page, atRotation(what.sample(), one));
+    for (const Radians one : rotations) addMapsOf(page, tablesAt(what.sample(), one));
     page.section("slices", "Plane of incidence");
-    for (const Radians one : rotations) addSlicesOf(page, atRotation(what.sample(), one));
+    for (const Radians one : rotations) addSlicesOf(page, tablesAt(what.sample(), one));
 }
 
 void addReflectance(HtmlPage& page, const Reported& what) {

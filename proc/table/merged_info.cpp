@@ -167,11 +167,13 @@ std::string joinedBudget(std::span<const SampleSet> sets) {
 }
 
 SampleSet tablesAt(const SampleSet& set, Radians rotation) {
+    SampleSet part{.info = set.info, .leds = {}};
     std::vector<std::size_t> kept;
     for (std::size_t i = 0; i < set.leds.size(); ++i) {
-        if (sameRotation(set.leds[i].rotation, rotation)) kept.push_back(i);
+        if (!sameRotation(set.leds[i].rotation, rotation)) continue;
+        kept.push_back(i);
+        part.leds.push_back(set.leds[i]);
     }
-    SampleSet part = atRotation(set, rotation);
     part.info.budgetJson = budgetOfTables(set.info.budgetJson, kept);
     return part;
 }

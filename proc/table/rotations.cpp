@@ -39,14 +39,6 @@ std::vector<Radians> rotationsOf(const SampleSet& set) {
     return all;
 }
 
-SampleSet atRotation(const SampleSet& set, Radians rotation) {
-    SampleSet part{.info = set.info, .leds = {}};
-    for (const LedTable& led : set.leds) {
-        if (sameRotation(led.rotation, rotation)) part.leds.push_back(led);
-    }
-    return part;
-}
-
 void turnTo(SampleSet& set, Radians rotation) {
     for (LedTable& led : set.leds) led.rotation = rotation;
 }

@@ -23,9 +23,6 @@ namespace gonio::proc {
 /// Of the LEDs, ascending, each once.
 [[nodiscard]] std::vector<Radians> rotationsOf(const SampleSet& set);
 
-/// The set's tables of one rotation; the information is the whole set's.
-[[nodiscard]] SampleSet atRotation(const SampleSet& set, Radians rotation);
-
 /// Gives all tables of a set this rotation.
 void turnTo(SampleSet& set, Radians rotation);
 /// The set in the rig's frame: as an isotropic sample, which does not feel how it lies.

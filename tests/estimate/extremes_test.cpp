@@ -10,15 +10,12 @@
 #include "proc/estimate/sample_estimator.h"
 #include "proc/models/spec.h"
 #include "proc/optics/cell_grid.h"
+#include "tests/estimate/made_up.h"
 
 namespace gonio::proc {
 namespace {
 
-LightView pairOf(double thetaI, double thetaO, double phiO) {
-    return {
-        .in = Direction::fromSpherical(Radians::fromDegrees(thetaI), 0_deg),
-        .out = Direction::fromSpherical(Radians::fromDegrees(thetaO), Radians::fromDegrees(phiO))};
-}
+using test::pairAt;
 
 SampleSet sampleOf(const std::string& spec) {
     return syntheticSample(**makeModel(spec), {.relativeNoise = 0.01});
@@ -31,7 +28,7 @@ void expectAnswersEverywhere(const SampleSet& set) {
     for (const double thetaI : {0.0, 1e-9, 10.0, 20.0, 59.9, 60.0, 74.0, 90.0}) {
         for (const double thetaO : {0.0, 0.5, 20.0, 74.99, 75.0, 90.0}) {
             for (const double phi : {0.0, 0.5, 180.0, 359.5}) {
-                const Answer answer = (*made)->answer(pairOf(thetaI, thetaO, phi));
+                const Answer answer = (*made)->answer(pairAt(thetaI, thetaO, phi));
                 ASSERT_TRUE(answer.present()) << thetaI << " " << thetaO << " " << phi;
                 for (const Band band : kBands) {
                     ASSERT_TRUE(std::isfinite(answer.f[band])) << thetaI << " " << thetaO;
@@ -67,7 +64,7 @@ TEST(EstimatorExtremes, OneCellGoneWildStaysOneCell) {
     const LightView at40{.in = Direction::fromSpherical(40_deg, 0_deg),
                          .out = CellGrid::centre(cell)};
     EXPECT_EQ((*made)->answer(at40).f[Band::G], 1e5) << "a value is a value";
-    for (const LightView& pair : {pairOf(40, 45, 90), pairOf(40, 30, 270), pairOf(10, 30, 90)}) {
+    for (const LightView& pair : {pairAt(40, 45, 90), pairAt(40, 30, 270), pairAt(10, 30, 90)}) {
         const Answer answer = (*made)->answer(pair);
         EXPECT_NEAR(answer.f[Band::G], 0.3 / kPi, 0.02 * 0.3 / kPi);
     }

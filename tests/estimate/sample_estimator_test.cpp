@@ -9,16 +9,13 @@
 #include "proc/models/spec.h"
 #include "proc/optics/cell_grid.h"
 #include "proc/table/rotations.h"
+#include "tests/estimate/made_up.h"
 #include "tests/support/sample_sets.h"
 
 namespace gonio::proc {
 namespace {
 
-LightView pairOf(double thetaI, double thetaO, double phiO) {
-    return {
-        .in = Direction::fromSpherical(Radians::fromDegrees(thetaI), 0_deg),
-        .out = Direction::fromSpherical(Radians::fromDegrees(thetaO), Radians::fromDegrees(phiO))};
-}
+using test::pairAt;
 
 std::unique_ptr<const AnalyticModel> plastic() {
     return std::move(*makeModel("lambert,albedo=0.3/0.1/0.05+ggx,alpha=0.2,f0=0.04"));
@@ -61,7 +58,7 @@ TEST(SampleEstimator, TakesATurnedSampleAsIfItWereNot) {
     const SampleEstimatorOptions options{.method = "carried:lambert+ggx", .effort = Effort::Draft};
     turnTo(set, 45_deg);
     const auto turned = estimator(set, options);
-    for (const LightView& pair : {pairOf(30, 50, 140), pairOf(70, 60, 180)}) {
+    for (const LightView& pair : {pairAt(30, 50, 140), pairAt(70, 60, 180)}) {
         EXPECT_EQ(turned->answer(pair).f[Band::G], ofPlastic().answer(pair).f[Band::G]);
     }
     set.leds.front().rotation = Radians();
@@ -75,7 +72,7 @@ TEST(SampleEstimator, AnswersEverywhereAboveTheHorizonWithAnUncertainty) {
     for (const double thetaI : {0.0, 0.01, 10.0, 45.0, 60.0, 61.0, 75.0, 89.99}) {
         for (const double thetaO : {0.0, 0.01, 30.0, 60.0, 75.0, 77.0, 89.99}) {
             for (const double phi : {0.0, 90.0, 180.0, 300.0}) {
-                const Answer answer = learned->answer(pairOf(thetaI, thetaO, phi));
+                const Answer answer = learned->answer(pairAt(thetaI, thetaO, phi));
                 ASSERT_TRUE(answer.present()) << thetaI << " " << thetaO << " " << phi;
                 for (const Band band : kBands) {
                     EXPECT_GT(answer.f[band], 0);
@@ -88,7 +85,7 @@ TEST(SampleEstimator, AnswersEverywhereAboveTheHorizonWithAnUncertainty) {
 }
 
 TEST(SampleEstimator, HasNoAnswerBelowTheHorizon) {
-    const Answer answer = ofPlastic().answer(pairOf(20, 95, 0));
+    const Answer answer = ofPlastic().answer(pairAt(20, 95, 0));
     EXPECT_FALSE(answer.present());
     EXPECT_TRUE(answer.flags.has(Flag::BelowHorizon));
 }
@@ -137,8 +134,8 @@ TEST(SampleEstimator, KeepsToTheCellsOfAnIncidenceThatWasMeasured) {
         }
     }
     const auto made = estimator(set);
-    const Answer answer = made->answer(pairOf(40, 50, 90));  // between four cells
-    const double leaning = surface->answer(pairOf(40, 50, 90)).f[Band::R] * (1 + 0.3 * sin(50_deg));
+    const Answer answer = made->answer(pairAt(40, 50, 90));  // between four cells
+    const double leaning = surface->answer(pairAt(40, 50, 90)).f[Band::R] * (1 + 0.3 * sin(50_deg));
     EXPECT_NEAR(answer.f[Band::R], leaning, 0.02 * leaning);
     EXPECT_NEAR(answer.f[Band::R], leaning, 3 * *answer.u(Band::R));
 }
@@ -146,30 +143,30 @@ TEST(SampleEstimator, KeepsToTheCellsOfAnIncidenceThatWasMeasured) {
 TEST(SampleEstimator, SaysWhereAnAnswerComesFrom) {
     const auto carried =
         estimator(plasticSample(), {.method = "carried:lambert+ggx", .effort = Effort::Draft});
-    const Answer between = carried->answer(pairOf(30, 50, 70));
+    const Answer between = carried->answer(pairAt(30, 50, 70));
     EXPECT_EQ(between.source, Source::Interpolated);
     EXPECT_TRUE(between.flags.has(Flag::Interpolated) && between.flags.has(Flag::Model));
     // 70 to 40 degrees was measured the other way round.
-    const Answer exchanged = carried->answer(pairOf(70, 40, 100));
+    const Answer exchanged = carried->answer(pairAt(70, 40, 100));
     EXPECT_EQ(exchanged.source, Source::Reciprocity);
     EXPECT_TRUE(exchanged.flags.has(Flag::Reciprocity));
-    const Answer beyond = carried->answer(pairOf(85, 85, 180));
+    const Answer beyond = carried->answer(pairAt(85, 85, 180));
     EXPECT_EQ(beyond.source, Source::Model);
     EXPECT_TRUE(beyond.flags.has(Flag::Extrapolated));
     const auto sheets =
         estimator(plasticSample(), {.method = "specular-log", .effort = Effort::Draft});
-    EXPECT_EQ(sheets->answer(pairOf(85, 85, 180)).source, Source::Extrapolated);
+    EXPECT_EQ(sheets->answer(pairAt(85, 85, 180)).source, Source::Extrapolated);
     const auto prior = estimator(
         plasticSample(), {.method = "prior", .effort = Effort::Draft, .prior = standardPrior});
-    EXPECT_EQ(prior->answer(pairOf(30, 50, 70)).source, Source::Prior);
-    EXPECT_TRUE(prior->answer(pairOf(30, 50, 70)).flags.has(Flag::Prior));
+    EXPECT_EQ(prior->answer(pairAt(30, 50, 70)).source, Source::Prior);
+    EXPECT_TRUE(prior->answer(pairAt(30, 50, 70)).flags.has(Flag::Prior));
 }
 
 TEST(SampleEstimator, DoesNotJumpAtTheEdgesOfWhatWasMeasured) {
     for (const double edge : {60.0, 75.0}) {
         for (const double other : {13.0, 33.0, 71.0}) {
-            const double low = ofPlastic().answer(pairOf(edge - 1e-6, other, 150)).f[Band::R];
-            const double high = ofPlastic().answer(pairOf(edge + 1e-6, other, 150)).f[Band::R];
+            const double low = ofPlastic().answer(pairAt(edge - 1e-6, other, 150)).f[Band::R];
+            const double high = ofPlastic().answer(pairAt(edge + 1e-6, other, 150)).f[Band::R];
             EXPECT_NEAR(low, high, 1e-5 * low) << edge << " " << other;
         }
     }
@@ -177,18 +174,18 @@ TEST(SampleEstimator, DoesNotJumpAtTheEdgesOfWhatWasMeasured) {
 
 TEST(SampleEstimator, TellsNoUncertaintyThatItDoesNotKnow) {
     // Nothing was left out, so that nobody knows what the method is wrong by.
-    EXPECT_FALSE(ofPlastic().answer(pairOf(30, 50, 70)).u(Band::R));
+    EXPECT_FALSE(ofPlastic().answer(pairAt(30, 50, 70)).u(Band::R));
     const LightView cell{.in = Direction::fromSpherical(40_deg, 0_deg),
                          .out = CellGrid::centre(5000)};
     EXPECT_TRUE(ofPlastic().answer(cell).u(Band::R));
     // Between cells of an incidence that was measured, their own is all there is.
-    EXPECT_TRUE(ofPlastic().answer(pairOf(40, 33, 70)).u(Band::R));
+    EXPECT_TRUE(ofPlastic().answer(pairAt(40, 33, 70)).u(Band::R));
     // Values without an uncertainty: what they were predicted wrong by, their noise in it.
     const auto grey = std::shared_ptr<const Scatterer>(plastic());
     auto made = SampleEstimator::over(
         grey, gridDataOf(*grey, {0_deg, 20_deg, 40_deg, 60_deg}), {.method = "specular-log"});
     ASSERT_TRUE(made) << made.error().message;
-    const Answer answer = (*made)->answer(pairOf(30, 50, 70));
+    const Answer answer = (*made)->answer(pairAt(30, 50, 70));
     EXPECT_FALSE(answer.uRandom);
     EXPECT_GT(*answer.u(Band::R), 0);
 }
@@ -228,7 +225,7 @@ TEST(SampleEstimator, TakesForMeasuredOnlyTheIncidenceItself) {
 }
 
 TEST(SampleEstimator, IsReciprocalAndIsotropic) {
-    for (const LightView& pair : {pairOf(30, 50, 70), pairOf(66, 80, 170), pairOf(5, 12, 40)}) {
+    for (const LightView& pair : {pairAt(30, 50, 70), pairAt(66, 80, 170), pairAt(5, 12, 40)}) {
         const double f = ofPlastic().answer(pair).f[Band::R];
         EXPECT_NEAR(ofPlastic().answer({.in = pair.out, .out = pair.in}).f[Band::R], f, 1e-9 * f);
         const LightView turned{.in = pair.in.turned(77_deg), .out = pair.out.turned(77_deg)};
@@ -266,7 +263,7 @@ TEST(SampleEstimator, KeepsTheSystematicUncertaintyOfWhatItWasMadeFrom) {
     }
     for (const char* method : {"model:lambert+ggx", "carried:lambert+ggx", "prior"}) {
         const auto made = estimator(set, {.method = method, .prior = standardPrior});
-        const Answer answer = made->answer(pairOf(30, 50, 70));
+        const Answer answer = made->answer(pairAt(30, 50, 70));
         EXPECT_NEAR((*answer.uSystematic)[Band::R] / answer.f[Band::R], 0.04, 0.005) << method;
     }
 }
@@ -288,8 +285,8 @@ TEST(SampleEstimator, StandsOnOneIncidenceAndOnOneCell) {
     SampleSet one = plasticSample();
     one.leds.erase(one.leds.begin() + 1, one.leds.end());
     const auto single = estimator(one);
-    EXPECT_TRUE(single->answer(pairOf(50, 30, 20)).present());
-    EXPECT_FALSE(single->answer(pairOf(50, 30, 20)).u(Band::R));
+    EXPECT_TRUE(single->answer(pairAt(50, 30, 20)).present());
+    EXPECT_FALSE(single->answer(pairAt(50, 30, 20)).u(Band::R));
     for (CellSamples& cells : one.leds[0].bands) {
         const double f = cells.f[100];
         const double u = cells.uRandom[100];
@@ -300,7 +297,7 @@ TEST(SampleEstimator, StandsOnOneIncidenceAndOnOneCell) {
         cells.flags[100] = Flags{Flag::Measured};
     }
     const auto lonely = estimator(one);
-    const Answer answer = lonely->answer(pairOf(50, 30, 20));
+    const Answer answer = lonely->answer(pairAt(50, 30, 20));
     EXPECT_TRUE(answer.present());
     EXPECT_TRUE(answer.flags.has(Flag::Extrapolated));
 }
@@ -313,7 +310,7 @@ TEST(SampleEstimator, KeepsOneBandAsOne) {
     auto made = SampleEstimator::over(grey, std::move(data), {.method = "specular-log"});
     ASSERT_TRUE(made) << made.error().message;
     EXPECT_EQ((*made)->bandCount(), BandCount::One);
-    const Answer answer = (*made)->answer(pairOf(30, 50, 70));
+    const Answer answer = (*made)->answer(pairAt(30, 50, 70));
     EXPECT_EQ(answer.f[Band::G], answer.f[Band::R]);
     EXPECT_EQ(answer.u(Band::B), answer.u(Band::R));
     EXPECT_GT(answer.f[Band::B], 0.09);  // of red's albedo of 0.3

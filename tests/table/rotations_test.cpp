@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "proc/table/merged_info.h"
 #include "proc/table/sample_lookup.h"
 #include "proc/table/scattered_of.h"
 #include "tests/support/sample_sets.h"
@@ -45,8 +46,8 @@ TEST(Rotations, AreOneForEachPlaceOnTheTurn) {
     EXPECT_TRUE(sameRotation(rotationOf(359.995), Radians(0)));
     EXPECT_FALSE(sameRotation(rotationOf(359.98), Radians(0)));
     EXPECT_EQ(rotationsOf(turnedSample()), (std::vector{0_deg, 45_deg, 90_deg}));
-    EXPECT_EQ(atRotation(turnedSample(), 45_deg).leds.size(), 3U);
-    EXPECT_TRUE(atRotation(turnedSample(), 30_deg).leds.empty());
+    EXPECT_EQ(tablesAt(turnedSample(), 45_deg).leds.size(), 3U);
+    EXPECT_TRUE(tablesAt(turnedSample(), 30_deg).leds.empty());
 }
 
 TEST(Rotations, LookUpAndScatteredSamplesAreInTheSamplesOwnFrame) {
