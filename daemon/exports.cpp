@@ -34,10 +34,14 @@ ExportedFile zemaxFile(const Scatterer& from, const proc::SpecularGrid& grid, Ba
     proc::FilledTable filled = proc::fillTable(from, grid, band);
     if (!mono) filled.table.comments.push_back(proc::wavelengthComment(band));
     proc::Written written = proc::writeZemax(filled.table);
-    written.loss.add("nodes without an answer, written as 0", filled.unanswered);
-    written.loss.add("answers of exactly 0, which read back as missing", filled.exactZero);
-    written.loss.add("uncertainties left out", filled.uncertain);
-    written.loss.add("answers beyond what was measured, extrapolated", filled.extrapolated);
+    written.loss.add(
+        proc::Loss::Masked, "nodes without an answer, written as 0", filled.unanswered);
+    written.loss.add(
+        proc::Loss::Masked, "answers of exactly 0, which read back as missing", filled.exactZero);
+    written.loss.add(proc::Loss::Dropped, "uncertainties left out", filled.uncertain);
+    written.loss.add(proc::Loss::Extrapolated,
+                     "answers beyond what was measured, extrapolated",
+                     filled.extrapolated);
     return {mono ? "" : suffixOf(band), std::move(written.bytes), std::move(written.loss)};
 }
 

@@ -3,23 +3,40 @@
 // the file back gives the same.
 
 #include <cstddef>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace gonio::proc {
 
+enum class Loss {
+    Resampled,     ///< asked at other directions than the source's own
+    Clamped,       ///< moved into what the format can hold
+    Masked,        ///< missing: written as the format says that there is no value
+    Extrapolated,  ///< answered from beyond what was measured
+    Dropped,       ///< not in the file at all
+};
+/// "resampled", ...
+[[nodiscard]] std::string_view name(Loss kind);
+
 struct LossReport {
     struct Item {
-        std::string what;  ///< "nodes without data, written as 0"
-        std::size_t count = 0;
+        Loss kind = Loss::Dropped;
+        std::string what;       ///< "nodes without data, written as 0"
+        std::size_t count = 0;  ///< of values, unless `what` says of what
+        /// Relative to the source, where it was measured: the largest, and weighted by f
+        /// cos(theta_o).
+        std::optional<double> largestError{};
+        std::optional<double> weightedError{};
 
         bool operator==(const Item&) const = default;
     };
     std::vector<Item> items;
 
     /// Ignores a count of 0.
-    void add(std::string what, std::size_t count) {
-        if (count > 0) items.push_back({std::move(what), count});
+    void add(Loss kind, std::string what, std::size_t count) {
+        if (count > 0) items.push_back({.kind = kind, .what = std::move(what), .count = count});
     }
 };
 

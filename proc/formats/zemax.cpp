@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -10,72 +9,10 @@
 #include "proc/core/number_text.h"
 #include "proc/formats/file_bytes.h"
 #include "proc/formats/shown.h"
+#include "proc/formats/words.h"
 
 namespace gonio::proc {
 namespace {
-
-std::string lower(std::string_view text) {
-    std::string out(text);
-    for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return out;
-}
-
-/// Words of the text with their line; comments are set aside.
-class Words {
-public:
-    explicit Words(std::string_view text) : text_(text) {}
-
-    /// The next word, without taking it; empty at the end.
-    [[nodiscard]] std::string_view peek() {
-        skipSpace();
-        std::size_t end = at_;
-        while (end < text_.size() && !isSpace(text_[end])) ++end;
-        return text_.substr(at_, end - at_);
-    }
-    std::string_view take() {
-        const std::string_view word = peek();
-        at_ += word.size();
-        return word;
-    }
-    [[nodiscard]] bool done() { return peek().empty(); }
-    [[nodiscard]] int line() const { return line_; }
-    [[nodiscard]] std::size_t bytesLeft() const { return text_.size() - at_; }
-    [[nodiscard]] std::vector<std::string> takeComments() { return std::move(comments_); }
-
-private:
-    static bool isSpace(char c) {
-        return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f' || c == '\v';
-    }
-    void skipSpace() {
-        while (at_ < text_.size()) {
-            if (text_[at_] == '#') {
-                skipComment();
-            } else if (isSpace(text_[at_])) {
-                if (endsLine()) ++line_;
-                ++at_;
-            } else {
-                return;
-            }
-        }
-    }
-    /// A line ends in LF, CR LF or, as some instruments write it, in a bare CR.
-    [[nodiscard]] bool endsLine() const {
-        if (text_[at_] == '\r') return at_ + 1 == text_.size() || text_[at_ + 1] != '\n';
-        return text_[at_] == '\n';
-    }
-    void skipComment() {
-        const std::size_t end = std::min(text_.find_first_of("\r\n", at_), text_.size());
-        std::string_view comment = text_.substr(at_ + 1, end - at_ - 1);
-        if (!comment.empty() && comment.front() == ' ') comment.remove_prefix(1);
-        comments_.emplace_back(comment);
-        at_ = end;
-    }
-
-    std::string_view text_;
-    std::size_t at_ = 0;
-    int line_ = 1;
-    std::vector<std::string> comments_;
-};
 
 /// What an axis of the header may hold, in degrees.
 struct AxisRule {
@@ -380,8 +317,8 @@ void appendPlane(Written& out, const SpecularTable& table, std::size_t plane) {
         out.bytes += (i + 1) % radials == 0 ? "\n" : "\t";
     }
     out.bytes += "DataEnd\n";
-    out.loss.add("nodes without a finite value, written as 0", lost);
-    out.loss.add("TIS without a finite value, written as 0", lostTis);
+    out.loss.add(Loss::Masked, "nodes without a finite value, written as 0", lost);
+    out.loss.add(Loss::Dropped, "TIS without a finite value, written as 0", lostTis);
 }
 
 }  // namespace

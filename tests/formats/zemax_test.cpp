@@ -404,8 +404,9 @@ TEST(Zemax, WritesWhatIsNotFiniteAsZeroAndCountsIt) {
     table.planes[0].tis[1] = kNan;
     const Written written = writeZemax(table);
     EXPECT_EQ(written.loss.items,
-              (std::vector<LossReport::Item>{{"nodes without a finite value, written as 0", 2},
-                                             {"TIS without a finite value, written as 0", 1}}));
+              (std::vector<LossReport::Item>{
+                  {Loss::Masked, "nodes without a finite value, written as 0", 2},
+                  {Loss::Dropped, "TIS without a finite value, written as 0", 1}}));
     const SpecularTable back = parsed(written.bytes);
     EXPECT_FALSE(back.hasData(0, {0, 0, 0, 1}));
     EXPECT_FALSE(back.hasData(0, {0, 0, 0, 2}));
