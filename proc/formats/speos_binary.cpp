@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <optional>
 
 #include "proc/core/number_text.h"
@@ -184,7 +185,7 @@ private:
         }
         for (const double nm : nanometres) {
             double percent = 0;
-            if (!number(percent, "per cent", 0, 1e6)) return false;
+            if (!number(percent, "per cent", 0, std::numeric_limits<double>::max())) return false;
             text += (text.empty() ? "" : ", ") + shortest(nm) + " " + shortest(percent);
         }
         out_.content.channels = {rows == 1 ? Channel{"", nanometres[0]} : Channel{}};

@@ -81,10 +81,10 @@ private:
     }
 
     [[nodiscard]] double total(const SphericalBlock& block) {
-        double fraction = blockIntegral(table_, block);
-        if (!std::isfinite(fraction)) fraction = block.tis;
-        noTotal_ += std::isfinite(fraction) ? 0U : 1U;
-        return std::isfinite(fraction) ? std::max(perCentOf(fraction), 0.0) : 0;
+        double percent = perCentOf(blockIntegral(table_, block));
+        if (!std::isfinite(percent)) percent = perCentOf(block.tis);
+        noTotal_ += std::isfinite(percent) ? 0U : 1U;
+        return std::isfinite(percent) ? std::max(percent, 0.0) : 0;
     }
 
     void values(const SphericalBlock& block) {
@@ -228,16 +228,22 @@ std::vector<SpectrumRow> Writer::spectrumOf(const std::vector<Fans>& sides) {
     std::vector<SpectrumRow> rows;
     for (const Fans& fans : sides) {
         const SphericalBlock& first = *fans.begin()->second.begin()->second;
+        std::map<double, const SphericalBlock*> there;
+        for (const SphericalBlock& block : table_.blocks) {
+            const auto nm = table_.channels[block.channel].nanometres;
+            if (nm && block.transmission == first.transmission &&
+                block.incidenceDeg == first.incidenceDeg &&
+                block.lightAzimuthDeg == first.lightAzimuthDeg) {
+                there.emplace(*nm, &block);
+            }
+        }
         for (const double nm : nanometres) {
-            const auto block = std::find_if(
-                table_.blocks.begin(), table_.blocks.end(), [&](const SphericalBlock& b) {
-                    return (!known || table_.channels[b.channel].nanometres == nm) &&
-                           b.transmission == first.transmission &&
-                           b.incidenceDeg == first.incidenceDeg &&
-                           b.lightAzimuthDeg == first.lightAzimuthDeg;
-                });
-            noTotal_ += block == table_.blocks.end() ? 1U : 0U;
-            rows.push_back({nm, block == table_.blocks.end() ? 0 : total(*block)});
+            const auto found = there.find(nm);
+            const SphericalBlock* block = !known                 ? &first
+                                          : found == there.end() ? nullptr
+                                                                 : found->second;
+            noTotal_ += block == nullptr ? 1U : 0U;
+            rows.push_back({nm, block == nullptr ? 0 : total(*block)});
         }
     }
     return rows;

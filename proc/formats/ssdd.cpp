@@ -6,6 +6,7 @@
 #include <cstring>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "proc/core/number_text.h"
 #include "proc/formats/shown.h"
@@ -403,7 +404,7 @@ private:
     }
 
     void finish() {
-        out_.about = metadataOfLines(comments_);
+        out_.about = metadataOfLines(std::exchange(comments_, {}));
         for (const auto& [name, value] : fields_.values) {
             if (out_.about.at(name).empty()) out_.about.set(name, value);
         }
