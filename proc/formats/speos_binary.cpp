@@ -118,7 +118,8 @@ private:
     bool axis(std::vector<double>& into, std::size_t size, const AxisRule& rule) {
         if (!array(into, size, std::string(rule.name))) return false;
         for (std::size_t i = 0; i < size; ++i) {
-            if (into[i] < rule.low || into[i] > rule.high || (i > 0 && into[i] <= into[i - 1])) {
+            if (into[i] < rule.low || into[i] > rule.high ||
+                (i > 0 && into[i] < into[i - 1] + kFinestStepDeg)) {
                 return fail(std::string(rule.name) + " " + shortest(into[i]) +
                             ", wanted ascending in [" + shortest(rule.low) + ", " +
                             shortest(rule.high) + "]");

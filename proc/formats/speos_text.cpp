@@ -151,7 +151,7 @@ private:
     }
     bool ascends(const std::vector<double>& axis, const std::string& what) {
         for (std::size_t i = 1; i < axis.size(); ++i) {
-            if (axis[i] <= axis[i - 1]) {
+            if (axis[i] < axis[i - 1] + kFinestStepDeg) {
                 return fail(shortest(axis[i]) + " after " + shortest(axis[i - 1]) + ": " + what +
                             " must ascend");
             }
@@ -235,6 +235,15 @@ private:
         return std::adjacent_find(values.begin(), values.end()) == values.end() ||
                fail("two equal " + what);
     }
+    bool distinctOnCircle(std::vector<double> angles) {
+        for (double& angle : angles) angle -= 360 * std::floor(angle / 360);
+        std::sort(angles.begin(), angles.end());
+        for (std::size_t i = 0; i < angles.size(); ++i) {
+            const double next = i + 1 < angles.size() ? angles[i + 1] : angles[0] + 360;
+            if (next - angles[i] < kFinestStepDeg) return fail("two equal anisotropy angles");
+        }
+        return true;
+    }
     [[nodiscard]] std::vector<bool> sides() const {
         std::vector<bool> sides;
         if (reflection_) sides.push_back(false);
@@ -251,8 +260,7 @@ private:
         std::size_t angles = 0;
         std::vector<double> angleDeg;
         if (!count(angles, "anisotropy angles") ||
-            !list(angleDeg, angles, "anisotropy angle", -360, 360) ||
-            !distinct(angleDeg, "anisotropy angles")) {
+            !list(angleDeg, angles, "anisotropy angle", -360, 360) || !distinctOnCircle(angleDeg)) {
             return false;
         }
         for (const double angle : angleDeg) {

@@ -214,7 +214,7 @@ private:
             if (!value || *value < 0 || *value > most) {
                 return fail(shown(words[i]) + ", wanted numbers in [0, " + shortest(most) + "]");
             }
-            if (!into.empty() && *value <= into.back()) {
+            if (!into.empty() && *value < into.back() + kFinestStepDeg) {
                 return fail(shown(words[i]) + " after " + shortest(into.back()) +
                             ": lists must ascend");
             }
