@@ -178,6 +178,8 @@ TEST(LightToolsReader, RefusesWhatItDoesNotKnowOrIsGivenTwice) {
         refuses(parseLightTools(replaced(small(), "AOI  20", "AOI 181"), "in"), {"[0, 180]"}));
     EXPECT_TRUE(
         refuses(parseLightTools(replaced(small(), "0\t60", "60\t0"), "in"), {"must ascend"}));
+    EXPECT_TRUE(refuses(parseLightTools(replaced(small(), "0\t60", "0\t0.0000001"), "in"),
+                        {"must ascend"}));
     EXPECT_TRUE(refuses(parseLightTools(replaced(small(), "0\t60", "0\t91"), "in"), {"[0, 90]"}));
     EXPECT_TRUE(refuses(parseLightTools(replaced(small(), "Monochrome", "XYZ"), "in"),
                         {"no TristimulusValue"}));

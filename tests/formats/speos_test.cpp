@@ -204,6 +204,10 @@ TEST(SpeosText, RefusesWhatDoesNotFit) {
         refuses(parseSpeos(replaced(brdf(), "\t0\t120", "\t130\t120"), "in"), {"must ascend"}));
     EXPECT_TRUE(refuses(parseSpeos(replaced(brdf(), "90\t0.2", "100\t0.2"), "in"), {"at most 90"}));
     EXPECT_TRUE(
+        refuses(parseSpeos(replaced(brdf(), "\t120\t", "\t0.0000001\t"), "in"), {"must ascend"}));
+    EXPECT_TRUE(refuses(parseSpeos(replaced(anisotropic(), "0\t90\n1", "0\t360\n1"), "in"),
+                        {"two equal anisotropy angles"}));
+    EXPECT_TRUE(
         refuses(parseSpeos(replaced(brdf(), "1\t0\n", "0\t1\n"), "in"), {"in transmission"}));
     EXPECT_TRUE(
         refuses(parseSpeos(replaced(brdf(), "\n8\n", "\n5\n"), "in"), {"longer than its 5"}));
@@ -311,6 +315,28 @@ TEST(SpeosWriter, StatesTotalsInPerCent) {
     for (const SphericalBlock& block : parsed(text).content.blocks) {
         EXPECT_NEAR(block.tis, 0.1345, 1e-12);
     }
+}
+
+TEST(SpeosWriter, KeepsATotalThatOnlyTheFileTells) {
+    // The azimuths leave a gap, so that the table has no integral of its own.
+    std::string two = anisotropic();
+    for (int i = 0; i < 2; ++i) two = replaced(two, "\t0\t180\n", "\t0\t90\n");
+    const std::string one = replaced(two, "2\n400\t50\n700\t60", "1\n525\t50");
+    for (const std::string& file : {two, one}) {
+        const auto read = parsed(file);
+        const auto once = writeSpeosAnisotropic(read.content, read.about);
+        ASSERT_TRUE(once);
+        EXPECT_NE(once->bytes.find("\t50\n"), std::string::npos);
+        const auto again = parsed(once->bytes);
+        EXPECT_EQ(writeSpeosAnisotropic(again.content, again.about)->bytes, once->bytes);
+    }
+}
+
+TEST(SpeosWriter, WritesTotalsOfAnySizeThatItReads) {
+    const std::string text =
+        writeSpeosBrdf(sphericalTable({}, [](const LightView&, std::size_t) { return 1e200; }), {})
+            ->bytes;
+    EXPECT_EQ(writeSpeosBrdf(parsed(text).content, parsed(text).about)->bytes, text);
 }
 
 TEST(SpeosWriter, ReportsWhatIsLostAndRefusesTheRest) {

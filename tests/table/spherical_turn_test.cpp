@@ -64,6 +64,13 @@ TEST(SphericalTurn, MirrorsAHalfThatWouldLeaveTheTurn) {
     expectSameDirections(other);
 }
 
+TEST(SphericalTurn, MergesWhatIsOneDirection) {
+    const SphericalTable table =
+        sphericalTable({.azimuthDeg = {0, 90, 90.0000005, 359.9999999999}}, handed);
+    EXPECT_EQ(wholeCircle(table).blocks[0].azimuthDeg, (std::vector<double>{0, 90, 360}));
+    EXPECT_EQ(withMirrorAt(table, 0).blocks[0].azimuthDeg, (std::vector<double>{180, 270}));
+}
+
 TEST(SphericalTurn, LeavesATableAloneThatIsThereAlready) {
     const SphericalTable table = sphericalTable({.azimuthDeg = steps(-30, 330, 10)}, handed);
     EXPECT_EQ(withMirrorAt(table, 180).blocks[0].azimuthDeg, table.blocks[0].azimuthDeg);
