@@ -8,8 +8,10 @@
 
 namespace gonio::proc {
 
-[[nodiscard]] inline double fileDegrees(Radians angle) {
-    return std::round(angle.degrees() * 1e9) / 1e9;
+[[nodiscard]] inline double roundedDegrees(double degrees) {
+    return std::round(degrees * 1e9) / 1e9;
 }
+
+[[nodiscard]] inline double fileDegrees(Radians angle) { return roundedDegrees(angle.degrees()); }
 
 }  // namespace gonio::proc

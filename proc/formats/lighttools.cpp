@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "proc/core/number_text.h"
+#include "proc/formats/file_degrees.h"
 #include "proc/formats/shown.h"
 #include "proc/formats/spherical_warnings.h"
 #include "proc/formats/words.h"
@@ -28,15 +29,12 @@ struct Head {
     [[nodiscard]] bool fromBehind() const { return back.value_or(false) || *incidence > 90; }
 };
 
-/// Degrees to 1e-9, as they are written.
-double rounded(double degrees) { return std::round(degrees * 1e9) / 1e9; }
-
 double foldedIncidence(const Head& head) {
-    return rounded(std::min(*head.incidence, 180 - *head.incidence));
+    return roundedDegrees(std::min(*head.incidence, 180 - *head.incidence));
 }
 double lightAzimuth(const Head& head) {
     const double plane = head.plane.value_or(0);
-    const double azimuth = rounded(plane - 360 * std::floor(plane / 360));
+    const double azimuth = roundedDegrees(plane - 360 * std::floor(plane / 360));
     return azimuth >= 360 ? 0 : azimuth;
 }
 
@@ -44,14 +42,6 @@ struct ReadBlock {
     Head head;
     std::vector<double> f;  ///< azimuth > radial, as the file has it
 };
-
-/// The LED's own channel where the wavelength is one of theirs.
-Channel channelOf(double nanometres) {
-    for (const Band band : kBands) {
-        if (gonio::nanometres(band) == nanometres) return Channel::of(band);
-    }
-    return nanometres > 0 ? Channel{"", nanometres} : Channel{};
-}
 
 /// Reads one text. The first complaint stops it: each step answers false once there is an error.
 class Reader {
@@ -348,7 +338,8 @@ private:
             } else {
                 const double nanometres = read.head.wavelength.value_or(0);
                 const auto [at, fresh] = channels.emplace(nanometres, table.channels.size());
-                if (fresh) table.channels.push_back(channelOf(nanometres));
+                if (fresh)
+                    table.channels.push_back(nanometres > 0 ? Channel::at(nanometres) : Channel{});
                 block.channel = at->second;
             }
             block.incidenceDeg = foldedIncidence(read.head);

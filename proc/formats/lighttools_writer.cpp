@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "proc/core/number_text.h"
+#include "proc/formats/file_degrees.h"
 #include "proc/formats/lighttools.h"
 #include "proc/table/block_integral.h"
 #include "proc/table/spherical_turn.h"
@@ -15,13 +16,10 @@ namespace {
 
 constexpr std::array<std::string_view, 3> kXyz{"X", "Y", "Z"};
 
-/// Degrees to 1e-9, so that an angle and 180 less it are written in the same digits.
-double written(double degrees) { return std::round(degrees * 1e9) / 1e9; }
-
 std::vector<double> radialsOf(const SphericalBlock& block) {
     std::vector<double> radials;
     for (const double theta : block.thetaDeg) {
-        radials.push_back(written(block.transmission ? 180 - theta : theta));
+        radials.push_back(roundedDegrees(block.transmission ? 180 - theta : theta));
     }
     if (block.transmission) std::reverse(radials.begin(), radials.end());
     return radials;
@@ -29,7 +27,7 @@ std::vector<double> radialsOf(const SphericalBlock& block) {
 
 std::vector<double> azimuthsOf(const SphericalBlock& block) {
     std::vector<double> azimuths;
-    for (const double azimuth : block.azimuthDeg) azimuths.push_back(written(azimuth));
+    for (const double azimuth : block.azimuthDeg) azimuths.push_back(roundedDegrees(azimuth));
     return azimuths;
 }
 
@@ -72,8 +70,8 @@ private:
             const double which =
                 xyz_ ? static_cast<double>(*tristimulus(channel)) : channel.nanometres.value_or(0);
             if (!seen.emplace(block.transmission,
-                              written(block.incidenceDeg),
-                              written(block.lightAzimuthDeg),
+                              roundedDegrees(block.incidenceDeg),
+                              roundedDegrees(block.lightAzimuthDeg),
                               which)
                      .second) {
                 ++channels;
@@ -118,8 +116,8 @@ private:
 
     void append(const SphericalBlock& block) {
         const Channel& channel = table_.channels[block.channel];
-        out_.bytes += "AOI  " + shortest(written(block.incidenceDeg)) + "\nPOI  " +
-                      shortest(written(block.lightAzimuthDeg)) + "\nSide  " +
+        out_.bytes += "AOI  " + shortest(roundedDegrees(block.incidenceDeg)) + "\nPOI  " +
+                      shortest(roundedDegrees(block.lightAzimuthDeg)) + "\nSide  " +
                       (about_.at(kLightToolsSide) == "back" ? "Back" : "Front") + "\nWavelength  " +
                       shortest(channel.nanometres.value_or(0)) + "\nScatterType  " +
                       (block.transmission ? "BTDF" : "BRDF") + "\n";

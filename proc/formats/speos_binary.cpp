@@ -189,7 +189,7 @@ private:
             if (!number(percent, "per cent", 0, std::numeric_limits<double>::max())) return false;
             text += (text.empty() ? "" : ", ") + shortest(nm) + " " + shortest(percent);
         }
-        out_.content.channels = {rows == 1 ? Channel{"", nanometres[0]} : Channel{}};
+        out_.content.channels = {rows == 1 ? Channel::at(nanometres[0]) : Channel{}};
         out_.about.set(kSpeosSpectrum, text);
         return true;
     }

@@ -208,7 +208,7 @@ private:
             !distinct(nanometres, "wavelengths")) {
             return false;
         }
-        for (const double nm : nanometres) out_.content.channels.push_back(channelOf(nm));
+        for (const double nm : nanometres) out_.content.channels.push_back(Channel::at(nm));
         for (const bool transmission : sides()) {
             for (const double incidence : incidenceDeg) {
                 for (std::size_t channel = 0; channel < wavelengths; ++channel) {
@@ -224,12 +224,6 @@ private:
         return true;
     }
 
-    static Channel channelOf(double nm) {
-        for (const Band band : kBands) {
-            if (gonio::nanometres(band) == nm) return Channel::of(band);
-        }
-        return {"", nm};
-    }
     bool distinct(std::vector<double> values, const std::string& what) {
         std::sort(values.begin(), values.end());
         return std::adjacent_find(values.begin(), values.end()) == values.end() ||
@@ -316,7 +310,7 @@ private:
             }
             text += (text.empty() ? "" : ", ") + shortest(nm) + " " + shortest(percent);
         }
-        out_.content.channels = {rows == 1 ? channelOf(nm) : Channel{}};
+        out_.content.channels = {rows == 1 ? Channel::at(nm) : Channel{}};
         out_.about.set(kSpeosSpectrum, text);
         return true;
     }

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "proc/core/number_text.h"
+#include "proc/formats/file_degrees.h"
 #include "proc/formats/speos.h"
 #include "proc/formats/speos_values.h"
 #include "proc/table/block_integral.h"
@@ -22,7 +23,7 @@ constexpr double kUnknownNm = 550;
 double perCentOf(double fraction) { return std::round(fraction * 1e12) / 1e10; }
 
 double anisotropyAngle(const SphericalBlock& block) {
-    const double angle = std::round((360 - block.lightAzimuthDeg) * 1e9) / 1e9;
+    const double angle = roundedDegrees(360 - block.lightAzimuthDeg);
     return angle >= 360 ? 0 : angle;
 }
 

@@ -25,14 +25,6 @@ constexpr std::string_view kSpecular = "specular_coordinate_system";
 /// A table of fewer bytes than these, on average, is none: bounds the memory by the file.
 constexpr std::size_t kLeastBytesPerTable = 16;
 
-/// The LED's own channel where the wavelength is one of theirs.
-Channel channelOf(double nanometres) {
-    for (const Band band : kBands) {
-        if (gonio::nanometres(band) == nanometres) return Channel::of(band);
-    }
-    return {"", nanometres};
-}
-
 /// Lines of text, and the bytes of grids between them.
 class Lines {
 public:
@@ -252,7 +244,7 @@ private:
         if (grid_.colourModel.empty()) return fail("a block has no COLOR_MODEL");
         if (grid_.colourModel == "spectrum") {
             if (wavelengths_.empty()) return fail("a spectrum has no WAVELENGTH_LIST");
-            for (const double nm : wavelengths_) grid_.channels.push_back(channelOf(nm));
+            for (const double nm : wavelengths_) grid_.channels.push_back(Channel::at(nm));
         } else if (grid_.colourModel == "rgb") {
             grid_.channels = {{"R", {}}, {"G", {}}, {"B", {}}};
         } else if (grid_.colourModel == "xyz") {

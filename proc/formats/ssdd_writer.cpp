@@ -7,14 +7,12 @@
 #include <set>
 
 #include "proc/core/number_text.h"
+#include "proc/formats/file_degrees.h"
 #include "proc/formats/ssdd.h"
 #include "proc/table/spherical_turn.h"
 
 namespace gonio::proc {
 namespace {
-
-/// Degrees to 1e-9, so that an angle and 180 less it are written in the same digits.
-double written(double degrees) { return std::round(degrees * 1e9) / 1e9; }
 
 /// A comment may hold '#', as it begins with one; a field may not.
 std::string oneLine(std::string text, bool comment = false) {
@@ -112,7 +110,7 @@ private:
             one.blocks.front().lightAzimuthDeg = block.lightAzimuthDeg;
         }
         block = std::move(one.blocks.front());
-        for (double& azimuth : block.azimuthDeg) azimuth = written(azimuth);
+        for (double& azimuth : block.azimuthDeg) azimuth = roundedDegrees(azimuth);
         if (!half_) return;
         const auto kept = static_cast<std::size_t>(
             std::upper_bound(block.azimuthDeg.begin(), block.azimuthDeg.end(), 180) -
@@ -141,7 +139,7 @@ private:
     [[nodiscard]] static std::vector<double> thetasOf(const SphericalBlock& block) {
         std::vector<double> thetas;
         for (const double theta : block.thetaDeg) {
-            thetas.push_back(written(block.transmission ? 180 - theta : theta));
+            thetas.push_back(roundedDegrees(block.transmission ? 180 - theta : theta));
         }
         if (block.transmission) std::reverse(thetas.begin(), thetas.end());
         return thetas;

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "proc/core/number_text.h"
+#include "proc/formats/file_degrees.h"
 #include "proc/formats/shown.h"
 #include "proc/formats/spherical_warnings.h"
 #include "proc/formats/words.h"
@@ -79,8 +80,6 @@ struct Scan {
     bool begun = false;
 };
 
-double rounded(double degrees) { return std::round(degrees * 1e9) / 1e9; }
-
 /// Where a value of an axis stands that is on it.
 std::size_t placeOf(const std::vector<double>& axis, double at) {
     return static_cast<std::size_t>(std::lower_bound(axis.begin(), axis.end(), at) - axis.begin());
@@ -88,7 +87,7 @@ std::size_t placeOf(const std::vector<double>& axis, double at) {
 
 /// The normal is the same direction on the other half of its plane, too.
 void atPole(SphericalBlock& block, std::size_t azimuth, std::size_t theta) {
-    const double across = rounded(std::fmod(block.azimuthDeg[azimuth] + 180, 360));
+    const double across = roundedDegrees(std::fmod(block.azimuthDeg[azimuth] + 180, 360));
     const std::size_t place = placeOf(block.azimuthDeg, across);
     if (place == block.azimuthDeg.size() || block.azimuthDeg[place] != across) return;
     double& f = block.f[block.index(place, theta)];
@@ -99,9 +98,9 @@ SphericalBlock blockOf(const Scan& scan) {
     SphericalBlock block{.incidenceDeg = *scan.incidence};
     const auto azimuthOf = [&](std::size_t theta, std::size_t phi) {
         const double turned = scan.phi.at(phi) + (scan.theta.at(theta) < -1e-9 ? 180 : 0);
-        return rounded(turned - 360 * std::floor(rounded(turned) / 360));
+        return roundedDegrees(turned - 360 * std::floor(roundedDegrees(turned) / 360));
     };
-    const auto thetaOf = [&](std::size_t i) { return rounded(std::abs(scan.theta.at(i))); };
+    const auto thetaOf = [&](std::size_t i) { return roundedDegrees(std::abs(scan.theta.at(i))); };
     std::set<double> azimuths;
     std::set<double> thetas;
     for (std::size_t t = 0; t < scan.thetas; ++t) {

@@ -23,6 +23,13 @@ struct Channel {
         constexpr std::string_view kLetters = "RGB";
         return {std::string(kLetters.substr(index(band), 1)), gonio::nanometres(band)};
     }
+    /// The LED's own channel where the wavelength is one of theirs, else one without a name.
+    [[nodiscard]] static Channel at(double nanometres) {
+        for (const Band band : kBands) {
+            if (gonio::nanometres(band) == nanometres) return of(band);
+        }
+        return {"", nanometres};
+    }
     /// R, G, B.
     [[nodiscard]] static std::vector<Channel> ofBands() {
         return {of(Band::R), of(Band::G), of(Band::B)};
