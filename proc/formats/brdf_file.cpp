@@ -1,0 +1,106 @@
+#include "proc/formats/brdf_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "proc/core/number_text.h"
+#include "proc/formats/file_bytes.h"
+#include "proc/formats/gonio_exr.h"
+#include "proc/formats/sniff.h"
+#include "proc/formats/zemax.h"
+
+namespace gonio::proc {
+namespace {
+
+using Decoder = Result<BrdfFile> (*)(std::string_view bytes, std::string_view name);
+
+Result<BrdfFile> ofGonio(std::string_view bytes, std::string_view name) {
+    Result<SampleSet> set = decodeGonio(bytes, name);
+    if (!set) return set.error();
+    Metadata about = metadataOf(set->info);
+    return BrdfFile{.content = std::move(*set), .about = std::move(about)};
+}
+
+Result<BrdfFile> ofZemax(std::string_view bytes, std::string_view name) {
+    Result<SpecularTable> table = parseZemax(bytes, name);
+    if (!table) return table.error();
+    Metadata about = metadataOfLines(table->comments);
+    return BrdfFile{.content = std::move(*table), .about = std::move(about)};
+}
+
+struct Codec {
+    Format format;
+    Decoder decode;
+};
+constexpr std::array kCodecs{Codec{Format::Gonio, ofGonio}, Codec{Format::Zemax, ofZemax}};
+
+/// "Wavelength (nm) = 525", as converters write it into a comment.
+std::optional<double> wavelengthIn(const Metadata& about) {
+    constexpr std::string_view kWord = "Wavelength (nm) =";
+    for (const std::string& comment : about.comments) {
+        const std::size_t at = comment.find(kWord);
+        if (at == std::string::npos) continue;
+        std::string number = comment.substr(at + kWord.size());
+        std::erase(number, ' ');
+        if (const auto nm = parseDouble(number)) return nm;
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+Result<BrdfFile> decodeBrdf(Format format, std::string_view bytes, std::string_view name) {
+    const auto known = std::find_if(
+        kCodecs.begin(), kCodecs.end(), [&](const Codec& codec) { return codec.format == format; });
+    if (known == kCodecs.end()) {
+        return Error{
+            ErrorKind::Usage,
+            std::string(name) + ": a " + std::string(factsOf(format).title) + " is no BRDF yet"};
+    }
+    Result<BrdfFile> file = known->decode(bytes, name);
+    if (file) file->format = format;
+    return file;
+}
+
+Result<BrdfFile> readBrdf(const std::filesystem::path& path, std::optional<Format> from) {
+    if (!from) {
+        const Result<Format> found = sniffFile(path);
+        if (!found) return found.error();
+        from = *found;
+    }
+    const Result<std::string> bytes = readFile(path);
+    if (!bytes) return bytes.error();
+    return decodeBrdf(*from, *bytes, path.string());
+}
+
+std::vector<Channel> channelsOf(const BrdfFile& file) {
+    if (file.as<SampleSet>() != nullptr) return Channel::ofBands();
+    if (const auto* spherical = file.as<SphericalTable>()) return spherical->channels;
+    if (const auto* rows = file.as<BrdfRows>()) return rows->channels;
+    const auto& table = *file.as<SpecularTable>();
+    if (table.colour == TableColour::Xyz) return {{"X", {}}, {"Y", {}}, {"Z", {}}};
+    return {{"", wavelengthIn(file.about)}};
+}
+
+std::vector<Radians> incidencesOf(const BrdfFile& file) {
+    std::vector<double> degrees;
+    const auto take = [&](double value) { degrees.push_back(std::round(value * 1e6) / 1e6); };
+    if (const auto* sample = file.as<SampleSet>()) {
+        for (const LedTable& led : sample->leds) take(led.incidence.degrees());
+    } else if (const auto* table = file.as<SpecularTable>()) {
+        for (const double incidence : table->incidenceDeg) take(incidence);
+    } else if (const auto* spherical = file.as<SphericalTable>()) {
+        for (const SphericalBlock& block : spherical->blocks) take(block.incidenceDeg);
+    } else if (const auto* rows = file.as<BrdfRows>()) {
+        for (const LightView& pair : rows->pairs) take(pair.in.theta().degrees());
+    }
+    std::sort(degrees.begin(), degrees.end());
+    degrees.erase(std::unique(degrees.begin(), degrees.end()), degrees.end());
+    std::vector<Radians> incidences;
+    for (const double value : degrees) incidences.push_back(Radians::fromDegrees(value));
+    return incidences;
+}
+
+}  // namespace gonio::proc
