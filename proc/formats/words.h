@@ -5,10 +5,14 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include "proc/core/number_text.h"
 
 namespace gonio::proc {
 
@@ -37,7 +41,20 @@ public:
         at_ += word.size();
         return word;
     }
-    [[nodiscard]] bool done() { return peek().empty(); }
+    /// Takes the next word where it is one finite number, in one pass; else takes nothing.
+    std::optional<double> takeNumber() {
+        skipSpace();
+        const auto number = leadingDouble(text_.substr(at_));
+        if (!number) return std::nullopt;
+        const std::size_t end = at_ + number->length;
+        if (end < text_.size() && !isSpace(text_[end])) return std::nullopt;
+        at_ = end;
+        return number->value;
+    }
+    [[nodiscard]] bool done() {
+        skipSpace();
+        return at_ == text_.size();
+    }
     [[nodiscard]] int line() const { return line_; }
     [[nodiscard]] std::size_t bytesLeft() const { return text_.size() - at_; }
     [[nodiscard]] std::vector<std::string> takeComments() { return std::move(comments_); }
