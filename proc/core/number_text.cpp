@@ -42,6 +42,11 @@ std::optional<std::int64_t> parseInteger(std::string_view text) {
 
 std::string shortest(double value) { return toText(value); }
 std::string shortest(float value) { return toText(value); }
+void appendShortest(std::string& text, double value) {
+    std::array<char, 32> buffer;  // the longest shortest double has 24 characters
+    const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+    text.append(buffer.data(), end);
+}
 std::string fixed(double value, int decimals) {
     return toText(value, std::chars_format::fixed, decimals);
 }

@@ -17,6 +17,8 @@ namespace gonio {
 /// Shortest digits that read back to the same double; "nan", "inf", "-inf" where it is none.
 [[nodiscard]] std::string shortest(double value);
 [[nodiscard]] std::string shortest(float value);
+/// The same, behind what `text` holds.
+void appendShortest(std::string& text, double value);
 /// Fixed number of decimals, for tables and labels.
 [[nodiscard]] std::string fixed(double value, int decimals);
 /// A fraction as "1.25 %".

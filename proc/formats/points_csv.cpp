@@ -72,13 +72,6 @@ std::string joined(std::span<const std::string_view> names) {
     return list;
 }
 
-/// From degrees as a file gives them: 90 degrees is on the horizon, not 6e-17 above it.
-Direction fromFileDegrees(double theta, double phi) {
-    Direction w = Direction::fromSpherical(Radians::fromDegrees(theta), Radians::fromDegrees(phi));
-    if (theta < 90 || w.z() <= 0) return w;
-    return *Direction::fromVector({w.x(), w.y(), 0});
-}
-
 class PointsReader {
 public:
     PointsReader(std::string_view text, std::string_view name) : text_(text), name_(name) {}
@@ -176,8 +169,9 @@ private:
                             ", wanted degrees in [0, 180]");
             }
         }
+        const auto at = [&](std::size_t i) { return Radians::fromDegrees(n[i]); };
         points_.pairs.push_back(
-            {.in = fromFileDegrees(n[0], n[1]), .out = fromFileDegrees(n[2], n[3])});
+            {.in = fileDirection(at(0), at(1)), .out = fileDirection(at(2), at(3))});
         return true;
     }
 
