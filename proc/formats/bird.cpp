@@ -575,8 +575,7 @@ private:
             return symmetry_.find("isotropic") != std::string::npos &&
                    symmetry_.find("anisotropic") == std::string::npos;
         }
-        const std::vector<double>& phi = of(PhiI);
-        return std::all_of(phi.begin(), phi.end(), [&](double one) { return one == phi.front(); });
+        return lightsAtOneAzimuth(read_.content.pairs);
     }
 
     void fill(const EntryPairs& pairs) {

@@ -10,7 +10,7 @@
 namespace gonio::proc {
 
 [[nodiscard]] inline double fileDegrees(Radians angle) {
-    return std::round(angle.degrees() * 1e9) / 1e9;
+    return std::round(angle.degrees() * 1e9) / 1e9 + 0.0;  // never -0
 }
 
 /// An azimuth in [0, 360).
