@@ -5,9 +5,9 @@
 #include <cmath>
 #include <utility>
 
-#include "proc/core/number_text.h"
 #include "proc/formats/file_bytes.h"
 #include "proc/formats/gonio_exr.h"
+#include "proc/formats/named_band.h"
 #include "proc/formats/sniff.h"
 #include "proc/formats/zemax.h"
 
@@ -36,17 +36,15 @@ struct Codec {
 };
 constexpr std::array kCodecs{Codec{Format::Gonio, ofGonio}, Codec{Format::Zemax, ofZemax}};
 
-/// "Wavelength (nm) = 525", as converters write it into a comment.
-std::optional<double> wavelengthIn(const Metadata& about) {
-    constexpr std::string_view kWord = "Wavelength (nm) =";
-    for (const std::string& comment : about.comments) {
-        const std::size_t at = comment.find(kWord);
-        if (at == std::string::npos) continue;
-        std::string number = comment.substr(at + kWord.size());
-        std::erase(number, ' ');
-        if (const auto nm = parseDouble(number)) return nm;
+/// Of one channel: what its name, its wavelength or the file's name says.
+std::optional<Band> soleBand(const std::vector<Channel>& channels,
+                             const std::filesystem::path& path) {
+    if (channels.size() != 1) return std::nullopt;
+    for (const Band band : kBands) {
+        if (channels[0].name == Channel::of(band).name) return band;
     }
-    return std::nullopt;
+    if (channels[0].nanometres) return bandOfWavelength(*channels[0].nanometres);
+    return bandOfName(path);
 }
 
 }  // namespace
@@ -55,9 +53,9 @@ Result<BrdfFile> decodeBrdf(Format format, std::string_view bytes, std::string_v
     const auto known = std::find_if(
         kCodecs.begin(), kCodecs.end(), [&](const Codec& codec) { return codec.format == format; });
     if (known == kCodecs.end()) {
-        return Error{
-            ErrorKind::Usage,
-            std::string(name) + ": a " + std::string(factsOf(format).title) + " is no BRDF yet"};
+        return Error{ErrorKind::File,
+                     std::string(name) + ": a " + std::string(factsOf(format).title) +
+                         " is no BRDF; `gonio info` tells what it holds"};
     }
     Result<BrdfFile> file = known->decode(bytes, name);
     if (file) file->format = format;
@@ -72,7 +70,9 @@ Result<BrdfFile> readBrdf(const std::filesystem::path& path, std::optional<Forma
     }
     const Result<std::string> bytes = readFile(path);
     if (!bytes) return bytes.error();
-    return decodeBrdf(*from, *bytes, path.string());
+    Result<BrdfFile> file = decodeBrdf(*from, *bytes, path.string());
+    if (file && !file->band) file->band = soleBand(channelsOf(*file), path);
+    return file;
 }
 
 std::vector<Channel> channelsOf(const BrdfFile& file) {
@@ -81,7 +81,10 @@ std::vector<Channel> channelsOf(const BrdfFile& file) {
     if (const auto* rows = file.as<BrdfRows>()) return rows->channels;
     const auto& table = *file.as<SpecularTable>();
     if (table.colour == TableColour::Xyz) return {{"X", {}}, {"Y", {}}, {"Z", {}}};
-    return {{"", wavelengthIn(file.about)}};
+    const auto nm = wavelengthIn(file.about.comments);
+    if (!file.band) return {{"", nm}};
+    const Channel band = Channel::of(*file.band);
+    return {{band.name, nm ? nm : band.nanometres}};
 }
 
 std::vector<Radians> incidencesOf(const BrdfFile& file) {

@@ -26,6 +26,9 @@ struct BrdfFile {
     BrdfContent content;
     Metadata about;
     std::vector<std::string> warnings;
+    /// Of a file of one value per pair: the LEDs' band that it is, where its wavelength or else its
+    /// name tells.
+    std::optional<Band> band{};
 
     /// The content where it is this kind of table, else null.
     template <class Table>

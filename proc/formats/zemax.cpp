@@ -358,8 +358,8 @@ Written writeZemax(const SpecularTable& table) {
     return out;
 }
 
-std::string wavelengthComment(Band band) {
-    return "Wavelength (nm) = " + shortest(nanometres(band));
+std::string wavelengthComment(double nanometres) {
+    return "Wavelength (nm) = " + shortest(nanometres);
 }
 
 }  // namespace gonio::proc
