@@ -34,12 +34,14 @@ std::string_view unquoted(std::string_view field) {
     return field;
 }
 
-/// Commas inside double quotes do not separate.
+constexpr std::size_t kMostColumns = 4096;
+
+/// Commas inside double quotes do not separate. At most one field more than a header may have.
 std::vector<std::string_view> fieldsOf(std::string_view line) {
     std::vector<std::string_view> fields;
     std::size_t start = 0;
     bool quoted = false;
-    for (std::size_t i = 0; i < line.size(); ++i) {
+    for (std::size_t i = 0; i < line.size() && fields.size() < kMostColumns; ++i) {
         if (line[i] == '"') quoted = !quoted;
         if (line[i] != ',' || quoted) continue;
         fields.push_back(unquoted(line.substr(start, i - start)));
@@ -123,8 +125,11 @@ private:
     }
 
     bool header(std::string_view line) {
-        for (const std::string_view field : fieldsOf(line))
-            points_.columns.push_back(nameIn(field));
+        const std::vector<std::string_view> fields = fieldsOf(line);
+        if (fields.size() > kMostColumns) {
+            return fail("more than " + std::to_string(kMostColumns) + " columns");
+        }
+        for (const std::string_view field : fields) points_.columns.push_back(nameIn(field));
         const auto& columns = points_.columns;
         const auto count = [&](std::string_view name) {
             return std::count(columns.begin(), columns.end(), name);

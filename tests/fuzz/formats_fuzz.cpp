@@ -2,9 +2,7 @@
 // `fuzz_zemax` runs the reader `zemax`. `formats_fuzz --prepare` makes these names as links beside
 // itself, and the seeds of each reader in seeds/NAME.
 
-#include <algorithm>
 #include <cstdint>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -21,22 +19,23 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kPrefix = "fuzz_";
 
-std::string& reader() {
-    static std::string name;
-    return name;
+const Reader*& chosen() {
+    static const Reader* reader = nullptr;
+    return reader;
 }
 
 void writeSeeds(const Reader& reader, const fs::path& folder) {
     fs::create_directories(folder);
-    for (std::size_t i = 0; i < reader.sound.size(); ++i) {
-        std::ofstream(folder / ("sound" + std::to_string(i)), std::ios::binary) << reader.sound[i];
+    int count = 0;
+    for (const std::string& bytes : reader.sound()) {
+        std::ofstream(folder / ("sound" + std::to_string(count++)), std::ios::binary) << bytes;
     }
 }
 
 void prepare(const fs::path& program) {
     const fs::path folder = program.parent_path();
     for (const Reader& each : readers()) {
-        const fs::path link = folder / (std::string(kPrefix) + each.name);
+        const fs::path link = folder / (std::string(kPrefix) + std::string(each.name));
         fs::remove(link);
         fs::create_symlink(program.filename(), link);
         writeSeeds(each, folder / "seeds" / each.name);
@@ -63,19 +62,21 @@ extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
         leave(0, "");
     }
     const std::string name = program.filename();
-    reader() = name.starts_with(kPrefix) ? name.substr(kPrefix.size()) : "";
-    const auto all = readers();
-    const bool known = std::any_of(
-        all.begin(), all.end(), [](const Reader& each) { return each.name == reader(); });
-    if (!known) leave(2, name + " names no reader: run fuzz_zemax, ...; --prepare makes them");
+    chosen() = readerOf(name.starts_with(kPrefix) ? name.substr(kPrefix.size()) : "");
+    if (chosen() == nullptr) {
+        leave(2, name + " names no reader: run fuzz_zemax, ...; --prepare makes them");
+    }
     return 0;
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view bytes(reinterpret_cast<const char*>(data), size);  // NOLINT
-    const auto complaint = gonio::test::complaintOf(gonio::test::reader(), bytes);
-    if (complaint && complaint->message.find('\n') != std::string::npos) {
-        std::cerr << "a complaint of several lines: " << complaint->message << "\n";
+    const auto complaint = gonio::test::chosen()->complaint(bytes);
+    if (!complaint) return 0;
+    const bool oneLine = complaint->message.find_first_of("\r\n") == std::string::npos;
+    if (complaint->kind == gonio::ErrorKind::Internal || !oneLine) {
+        std::cerr << "ERROR: not a complaint of one line, or of our own: " << complaint->message
+                  << "\n";
         std::abort();
     }
     return 0;

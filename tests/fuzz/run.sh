@@ -44,7 +44,7 @@ fuzz() {
         return 0
     fi
     echo "$reader: FAILED"
-    grep -E '^==.*ERROR|runtime error|SUMMARY|^ *#[0-9]+ .* in gonio::|complaint of several' "$log" | head -n 12
+    grep -E 'ERROR|runtime error|SUMMARY|^ *#[0-9]+ .* in gonio::' "$log" | head -n 12
     for found in "$crashes"/*; do
         [ ! -f "$found" ] || echo "again by: $program -timeout=1 -malloc_limit_mb=50 $found"
     done
