@@ -44,6 +44,41 @@ std::vector<Row> turnedHalf(const std::vector<double>& axis, double turn, double
     return rows;
 }
 
+/// Both sides of the mirror plane, each direction once.
+std::vector<Row> unfolded(const std::vector<double>& axis, double mirror) {
+    std::vector<Row> rows;
+    for (std::size_t i = 0; i < axis.size(); ++i) {
+        rows.push_back({intoTurn(axis[i]), i});
+        rows.push_back({intoTurn(2 * mirror - axis[i]), i});
+    }
+    std::stable_sort(
+        rows.begin(), rows.end(), [](const Row& a, const Row& b) { return a.azimuth < b.azimuth; });
+    const auto same = [](const Row& a, const Row& b) { return b.azimuth - a.azimuth <= kSame; };
+    rows.erase(std::unique(rows.begin(), rows.end(), same), rows.end());
+    return rows;
+}
+
+bool coversCircle(const std::vector<Row>& rows) {
+    double widest = 0;
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+        widest = std::max(widest, rows[i].azimuth - rows[i - 1].azimuth);
+    }
+    return rows.front().azimuth + kTurn - rows.back().azimuth <= 1.5 * widest;
+}
+
+void takeRows(SphericalBlock& block, const std::vector<Row>& rows) {
+    std::vector<double> azimuths;
+    std::vector<double> f;
+    f.reserve(rows.size() * block.thetaDeg.size());
+    for (const Row& row : rows) {
+        azimuths.push_back(row.azimuth);
+        const auto start = block.f.begin() + static_cast<std::ptrdiff_t>(block.index(row.from, 0));
+        f.insert(f.end(), start, start + static_cast<std::ptrdiff_t>(block.thetaDeg.size()));
+    }
+    block.azimuthDeg = std::move(azimuths);
+    block.f = std::move(f);
+}
+
 }  // namespace
 
 SphericalTable withMirrorAt(SphericalTable table, double mirrorAzimuthDeg) {
@@ -52,21 +87,25 @@ SphericalTable withMirrorAt(SphericalTable table, double mirrorAzimuthDeg) {
     table.mirrorAzimuthDeg = mirrorAzimuthDeg;
     for (SphericalBlock& block : table.blocks) {
         if (block.azimuthDeg.empty()) continue;
-        const std::vector<Row> rows = table.planeSymmetrical
-                                          ? turnedHalf(block.azimuthDeg, turn, mirrorAzimuthDeg)
-                                          : turnedCircle(block.azimuthDeg, turn);
-        SphericalBlock turned = block;
-        turned.azimuthDeg.clear();
-        turned.f.clear();
-        for (const Row& row : rows) {
-            turned.azimuthDeg.push_back(row.azimuth);
-            const auto start =
-                block.f.begin() + static_cast<std::ptrdiff_t>(block.index(row.from, 0));
-            turned.f.insert(
-                turned.f.end(), start, start + static_cast<std::ptrdiff_t>(block.thetaDeg.size()));
-        }
-        block = std::move(turned);
+        takeRows(block,
+                 table.planeSymmetrical ? turnedHalf(block.azimuthDeg, turn, mirrorAzimuthDeg)
+                                        : turnedCircle(block.azimuthDeg, turn));
     }
+    return table;
+}
+
+SphericalTable wholeCircle(SphericalTable table) {
+    for (SphericalBlock& block : table.blocks) {
+        if (block.azimuthDeg.empty()) continue;
+        std::vector<Row> rows = table.planeSymmetrical
+                                    ? unfolded(block.azimuthDeg, table.mirrorAzimuthDeg)
+                                    : turnedCircle(block.azimuthDeg, 0);
+        if (rows.front().azimuth == 0 && rows.back().azimuth < kTurn && coversCircle(rows)) {
+            rows.push_back({kTurn, rows.front().from});
+        }
+        takeRows(block, rows);
+    }
+    table.planeSymmetrical = false;
     return table;
 }
 

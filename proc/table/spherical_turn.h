@@ -11,4 +11,8 @@ namespace gonio::proc {
 /// apart. A plane-symmetrical half is mirrored to the side that lies within [0, 360).
 [[nodiscard]] SphericalTable withMirrorAt(SphericalTable table, double mirrorAzimuthDeg);
 
+/// Both sides of a plane-symmetrical table, and an azimuth of 360 beside 0 where the azimuths of a
+/// block cover the circle. Azimuths lie in [0, 360].
+[[nodiscard]] SphericalTable wholeCircle(SphericalTable table);
+
 }  // namespace gonio::proc

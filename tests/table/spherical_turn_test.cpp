@@ -69,5 +69,40 @@ TEST(SphericalTurn, LeavesATableAloneThatIsThereAlready) {
     EXPECT_EQ(withMirrorAt(table, 180).blocks[0].azimuthDeg, table.blocks[0].azimuthDeg);
 }
 
+TEST(SphericalTurn, UnfoldsWhatIsPlaneSymmetrical) {
+    const auto even = [](const LightView& pair, std::size_t) {
+        return test::mirrorLobe(pair, 30) + pair.out.z();
+    };
+    for (const double first : {0.0, 90.0, 180.0}) {
+        const SphericalTable table =
+            wholeCircle(sphericalTable({.mirrorAzimuthDeg = first,
+                                        .planeSymmetrical = true,
+                                        .azimuthDeg = steps(first, first + 180, 10)},
+                                       even));
+        EXPECT_FALSE(table.planeSymmetrical);
+        for (const SphericalBlock& block : table.blocks) {
+            EXPECT_EQ(block.azimuthDeg, steps(0, 360, 10));
+            for (std::size_t a = 0; a < block.azimuthDeg.size(); ++a) {
+                for (std::size_t t = 0; t < block.thetaDeg.size(); ++t) {
+                    EXPECT_NEAR(
+                        block.f[block.index(a, t)], even(table.pairAt(block, a, t), 0), 1e-12);
+                }
+            }
+        }
+    }
+}
+
+TEST(SphericalTurn, ClosesACircleOnlyWhereItIsCovered) {
+    EXPECT_EQ(
+        wholeCircle(sphericalTable({.azimuthDeg = steps(0, 350, 10)}, handed)).blocks[0].azimuthDeg,
+        steps(0, 360, 10));
+    EXPECT_EQ(
+        wholeCircle(sphericalTable({.azimuthDeg = steps(0, 300, 10)}, handed)).blocks[0].azimuthDeg,
+        steps(0, 300, 10));
+    EXPECT_EQ(
+        wholeCircle(sphericalTable({.azimuthDeg = steps(5, 355, 10)}, handed)).blocks[0].azimuthDeg,
+        steps(5, 355, 10));
+}
+
 }  // namespace
 }  // namespace gonio::proc
