@@ -184,12 +184,19 @@ void refuseAbove(std::size_t limit, std::size_t bytes) {
                              std::to_string(limit) + " are read");
 }
 
-/// The pixels of all parts may not be more than deflate can hold in the file (1032 : 1), whatever
-/// the headers promise: known before the library or we make room for any.
+/// The pixels of all parts may not be more than deflate packs of measured values, with a wide
+/// margin: known before the library or we make room for any. Constant pictures pack better (1032 :
+/// 1), and small files may.
+std::size_t mostPixelBytes(std::size_t fileBytes) {
+    constexpr std::size_t kUsualRatio = 40;
+    constexpr std::size_t kSmall = std::size_t{40} << 20U;
+    return std::max(kSmall,
+                    fileBytes > SIZE_MAX / kUsualRatio ? SIZE_MAX : kUsualRatio * fileBytes);
+}
+
 void checkPromise(const Imf::MultiPartInputFile& file,
                   std::size_t fileBytes,
                   const ExrLimits& limits) {
-    constexpr std::size_t kMostRatio = 1032;
     std::size_t promised = 0;
     for (int i = 0; i < file.parts(); ++i) {
         const Imf::Header& header = file.header(i);
@@ -206,7 +213,7 @@ void checkPromise(const Imf::MultiPartInputFile& file,
         promised += ofPart;
     }
     refuseAbove(limits.bytes, promised);
-    if (promised / kMostRatio > fileBytes) {
+    if (promised > mostPixelBytes(fileBytes)) {
         throw std::runtime_error("more pixels than the file can hold");
     }
 }

@@ -58,6 +58,9 @@ public:
     [[nodiscard]] int line() const { return line_; }
     [[nodiscard]] std::size_t bytesLeft() const { return text_.size() - at_; }
     [[nodiscard]] std::vector<std::string> takeComments() { return std::move(comments_); }
+    /// More comments than any file that was made to be read: what follows is not kept.
+    [[nodiscard]] bool tooManyComments() const { return comments_.size() > kMostComments; }
+    static constexpr std::size_t kMostComments = 10'000;
 
 private:
     static bool isSpace(char c) {
@@ -84,7 +87,7 @@ private:
         const std::size_t end = std::min(text_.find_first_of("\r\n", at_), text_.size());
         std::string_view comment = text_.substr(at_ + 1, end - at_ - 1);
         if (!comment.empty() && comment.front() == ' ') comment.remove_prefix(1);
-        comments_.emplace_back(comment);
+        if (!tooManyComments()) comments_.emplace_back(comment);
         at_ = end;
     }
 

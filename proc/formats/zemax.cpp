@@ -46,7 +46,7 @@ public:
     Reader(std::string_view text, std::string_view name) : words_(text), name_(name) {}
 
     Result<SpecularTable> read() {
-        if (header() && headerIsWhole() && sections()) {
+        if (header() && headerIsWhole() && sections() && commentsFit()) {
             table_.comments = words_.takeComments();
             return std::move(table_);
         }
@@ -75,6 +75,11 @@ private:
             if (!headerLine(key)) return false;
         }
         return true;
+    }
+
+    bool commentsFit() {
+        return !words_.tooManyComments() ||
+               fail("more than " + std::to_string(Words::kMostComments) + " comments");
     }
 
     [[nodiscard]] bool atSection() {
