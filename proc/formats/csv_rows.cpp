@@ -12,6 +12,10 @@
 namespace gonio::proc {
 namespace {
 
+/// Of any file that was made to be read; a hostile one of a megabyte has no more memory than that.
+constexpr std::size_t kMostColumns = 4096;
+constexpr std::size_t kMostComments = 10'000;
+
 constexpr std::array<std::string_view, 4> kAngles{"theta_i", "phi_i", "theta_o", "phi_o"};
 constexpr std::array<std::string_view, 6> kVectors{"wi_x", "wi_y", "wi_z", "wo_x", "wo_y", "wo_z"};
 
@@ -51,7 +55,7 @@ std::vector<std::string_view> csvFields(std::string_view line,
     reuse.clear();
     std::size_t start = 0;
     bool quoted = false;
-    for (std::size_t i = 0; i < line.size(); ++i) {
+    for (std::size_t i = 0; i < line.size() && reuse.size() < kMostColumns; ++i) {
         if (line[i] == '"') quoted = !quoted;
         if (line[i] != ',' || quoted) continue;
         reuse.push_back(unquoted(line.substr(start, i - start)));
@@ -97,6 +101,10 @@ std::optional<std::string_view> CsvRows::nextLine() {
         if (content.front() != '#') return line;
         content.remove_prefix(1);
         if (content.starts_with(' ')) content.remove_prefix(1);
+        if (comments_.size() == kMostComments) {
+            fail("more than " + std::to_string(kMostComments) + " comments");
+            return std::nullopt;
+        }
         comments_.emplace_back(content);
     }
     return std::nullopt;
@@ -109,6 +117,9 @@ bool CsvRows::quotesEnd(std::string_view line) {
 
 bool CsvRows::header(std::string_view line) {
     fields_ = csvFields(line, std::move(fields_));
+    if (fields_.size() > kMostColumns) {
+        return fail("more than " + std::to_string(kMostColumns) + " columns");
+    }
     for (const std::string_view field : fields_) columns_.push_back(nameIn(field));
     const auto count = [&](std::string_view name) {
         return std::count(columns_.begin(), columns_.end(), name);

@@ -17,8 +17,8 @@
 
 namespace gonio::proc {
 
-/// Of one line, without their quotes; commas inside double quotes do not separate. `reuse` is room
-/// from the last line.
+/// Of one line, without their quotes; commas inside double quotes do not separate; at most one
+/// more than a header may have. `reuse` is room from the last line.
 [[nodiscard]] std::vector<std::string_view> csvFields(std::string_view line,
                                                       std::vector<std::string_view> reuse = {});
 
