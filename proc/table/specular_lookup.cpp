@@ -10,12 +10,30 @@ namespace gonio::proc {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t kPole = std::numeric_limits<std::size_t>::max();  ///< of radials
 
 /// (1 - t) low + t high; a node of no weight is not asked, so that its NaN cannot answer.
 template <class ValueAt>
-double between(const AxisPlace& place, const ValueAt& valueAt) {
-    const double low = valueAt(place.low);
-    return place.atNode() ? low : (1 - place.t) * low + place.t * valueAt(place.high);
+LedBands between(const AxisPlace& place, const ValueAt& valueAt) {
+    const LedBands low = valueAt(place.low);
+    return place.atNode() ? low : low * (1 - place.t) + valueAt(place.high) * place.t;
+}
+
+/// Whether an end of an axis is the centre of its cell, so that the axis goes on to the cell's
+/// edge.
+bool endsInACell(double distance, double step) { return distance > 0 && distance < 0.75 * step; }
+
+/// Whether the first radial is the centre of a cell that begins at the pole.
+bool hasOpenPole(const SpecularTable& table) {
+    const std::vector<double>& radials = table.radialDeg;
+    return radials.size() > 1 && endsInACell(radials[0], radials[1] - radials[0]);
+}
+
+/// A radial between the pole, as node `high` of the place, and the first node, as `low`.
+std::optional<AxisPlace> placeRadial(const SpecularTable& table, double radialDeg) {
+    if (const auto place = placeOn(table.radialDeg, radialDeg)) return place;
+    if (!hasOpenPole(table) || radialDeg > table.radialDeg.front()) return std::nullopt;
+    return AxisPlace{0, kPole, 1 - radialDeg / table.radialDeg.front()};
 }
 
 /// Where a pair lies on the four axes.
@@ -31,7 +49,16 @@ std::optional<AxisPlace> placeAzimuth(const SpecularTable& table, double azimuth
     if (table.symmetry != TableSymmetry::PlaneSymmetrical) {
         return placeOnCircle(table.azimuthDeg, azimuthDeg);
     }
-    return placeOn(table.azimuthDeg, azimuthDeg > 180 ? 360 - azimuthDeg : azimuthDeg);
+    const std::vector<double>& axis = table.azimuthDeg;
+    double at = azimuthDeg > 180 ? 360 - azimuthDeg : azimuthDeg;
+    // Between the mirror plane and the centre of the cell beside it both sides are the same.
+    if (axis.size() > 1 && at < axis[0] && endsInACell(axis[0], axis[1] - axis[0])) at = axis[0];
+    const std::size_t last = axis.size() - 1;
+    if (axis.size() > 1 && at > axis[last] &&
+        endsInACell(180 - axis[last], axis[last] - axis[last - 1])) {
+        at = axis[last];
+    }
+    return placeOn(axis, at);
 }
 
 std::optional<TablePlace> placeIn(const SpecularTable& table, const LightView& pair) {
@@ -39,7 +66,7 @@ std::optional<TablePlace> placeIn(const SpecularTable& table, const LightView& p
     const double incidenceDeg = std::max(pair.in.theta().degrees(), table.incidenceDeg.front());
     const auto incidence = placeOn(table.incidenceDeg, incidenceDeg);
     const auto azimuth = placeAzimuth(table, at.azimuth.degrees());
-    const auto radial = placeOn(table.radialDeg, at.radial.degrees());
+    const auto radial = placeRadial(table, at.radial.degrees());
     const auto rotation = table.rotationDeg.size() == 1
                               ? AxisPlace{}
                               : placeOnCircle(table.rotationDeg, -pair.in.phi().degrees());
@@ -54,9 +81,14 @@ std::string complaint(const SpecularTable& table) {
     }
     if (table.kind == ScatterKind::Btdf) return "table holds a BTDF: only BRDF can be looked up";
     if (table.nodeCount() == 0) return "table has no nodes";
-    if (table.planes.size() != 1 || table.planes[0].f.size() != table.nodeCount()) {
-        return "table has " + std::to_string(table.planes.empty() ? 0 : table.planes[0].f.size()) +
-               " values, its axes want " + std::to_string(table.nodeCount());
+    if (table.planes.size() != planeCount(table.colour)) {
+        return "table has " + std::to_string(table.planes.size()) + " planes, its colour wants " +
+               std::to_string(planeCount(table.colour));
+    }
+    for (const TablePlane& plane : table.planes) {
+        if (plane.f.size() == table.nodeCount()) continue;
+        return "table has " + std::to_string(plane.f.size()) + " values, its axes want " +
+               std::to_string(table.nodeCount());
     }
     return "";
 }
@@ -71,15 +103,20 @@ Result<SpecularLookup> SpecularLookup::over(SpecularTable table) {
 }
 
 SpecularLookup::SpecularLookup(SpecularTable table)
-    : table_(std::move(table)), f_(table_.nodeCount(), kNan) {
+    : table_(std::move(table)), f_(table_.nodeCount(), LedBands::all(kNan)) {
+    const bool openPole = hasOpenPole(table_);
+    const double azimuths = static_cast<double>(table_.azimuthDeg.size());
     for (TableNode n; n.rotation < table_.rotationDeg.size(); ++n.rotation) {
         for (n.incidence = 0; n.incidence < table_.incidenceDeg.size(); ++n.incidence) {
+            LedBands ring;
             for (n.azimuth = 0; n.azimuth < table_.azimuthDeg.size(); ++n.azimuth) {
                 for (n.radial = 0; n.radial < table_.radialDeg.size(); ++n.radial) {
                     const std::size_t i = table_.index(n);
-                    if (table_.hasData(0, n)) f_[i] = table_.planes[0].f[i];
+                    if (table_.hasData(n)) f_[i] = table_.bandsAt(n);
+                    if (n.radial == 0) ring = ring + f_[i] * (1 / azimuths);
                 }
             }
+            if (openPole) poles_.push_back(ring);
         }
     }
 }
@@ -90,20 +127,21 @@ Answer SpecularLookup::answer(const LightView& pair) const {
     }
     const auto place = placeIn(table_, pair);
     if (!place) return Answer::none({}, Source::Interpolated);
-    const double f = between(place->rotation, [&](std::size_t rotation) {
+    const LedBands f = between(place->rotation, [&](std::size_t rotation) {
         return between(place->incidence, [&](std::size_t incidence) {
             return between(place->azimuth, [&](std::size_t azimuth) {
                 return between(place->radial, [&](std::size_t radial) {
-                    return f_[table_.index({rotation, incidence, azimuth, radial})];
+                    const TableNode node{rotation, incidence, azimuth, radial};
+                    return radial == kPole ? poles_[table_.tisIndex(node)] : f_[table_.index(node)];
                 });
             });
         });
     });
     const bool node = place->atNode();
     const Source source = node ? Source::Measured : Source::Interpolated;
-    if (std::isnan(f)) return Answer::none({}, source);
     Answer answer;
-    answer.f = LedBands::all(f);
+    answer.f = f;
+    if (!answer.present()) return Answer::none({}, source);
     answer.flags.set(node ? Flag::Measured : Flag::Interpolated);
     answer.source = source;
     return answer;
