@@ -280,7 +280,7 @@ TEST(ExrParts, StoreHalvesAndNumbersInASinglePart) {
     EXPECT_EQ(back->front().numbers, part.numbers);
     EXPECT_EQ(back->front().floats.at("G"), part.floats["G"]);
     // Nearest of 11 significant bits.
-    EXPECT_NEAR(back->front().floats.at("R")[0], 0.1F, 0.1F / 4096);
+    EXPECT_NEAR(back->front().floats.at("R")[0], 0.1F, 0.1F / 2048);
     EXPECT_EQ(back->front().floats.at("R")[1], 65504.0F);
     EXPECT_EQ(*encodeExr(*back), *bytes);
 }
