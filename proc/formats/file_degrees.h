@@ -4,12 +4,26 @@
 
 #include <cmath>
 
+#include "proc/core/direction.h"
 #include "proc/core/units.h"
 
 namespace gonio::proc {
 
 [[nodiscard]] inline double fileDegrees(Radians angle) {
-    return std::round(angle.degrees() * 1e9) / 1e9;
+    return std::round(angle.degrees() * 1e9) / 1e9 + 0.0;  // never -0
+}
+
+/// An azimuth in [0, 360).
+[[nodiscard]] inline double fileAzimuthDegrees(Radians angle) {
+    const double degrees = fileDegrees(angle);
+    return degrees >= 360 ? degrees - 360 : degrees;
+}
+
+/// From the angles of a file: 90 degrees is on the horizon, not 6e-17 above it.
+[[nodiscard]] inline Direction fileDirection(Radians theta, Radians phi) {
+    const Direction w = Direction::fromSpherical(theta, phi);
+    if (theta < Radians(kPi / 2) || w.z() <= 0) return w;
+    return *Direction::fromVector({w.x(), w.y(), 0});
 }
 
 }  // namespace gonio::proc

@@ -29,6 +29,6 @@ namespace gonio::proc {
 [[nodiscard]] Written writeZemax(const SpecularTable& table);
 
 /// The comment in which the format's missing wavelength stands: "Wavelength (nm) = 525".
-[[nodiscard]] std::string wavelengthComment(Band band);
+[[nodiscard]] std::string wavelengthComment(double nanometres);
 
 }  // namespace gonio::proc

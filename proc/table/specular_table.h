@@ -30,7 +30,7 @@ enum class ScatterKind {
 enum class TableColour {
     Monochrome,
     Xyz,
-    LedBands  ///< R, G, B
+    LedBands  ///< R, G, B: no Zemax file
 };
 [[nodiscard]] constexpr std::size_t planeCount(TableColour colour) {
     return colour == TableColour::Monochrome ? 1 : 3;
@@ -60,8 +60,10 @@ struct SpecularTable {
     [[nodiscard]] std::size_t index(TableNode node) const;
     [[nodiscard]] std::size_t tisIndex(TableNode node) const;
 
-    /// The light and the view of a node. Rotation r turns the sample by +r under a fixed light: in
-    /// the sample's frame the light stands at azimuth -r. The light of incidence 0 is the normal.
+    /// The light and the view of a node; of transmission the view on the other side, across the
+    /// surface from where reflection would be. Rotation r turns the sample by +r under a fixed
+    /// light: in the sample's frame the light stands at azimuth -r. The light of incidence 0 is the
+    /// normal.
     [[nodiscard]] LightView pairAt(TableNode node) const;
     /// Above the horizon by more than rounding; for BTDF the other side of the surface counts.
     [[nodiscard]] bool canHoldData(TableNode node) const;

@@ -209,7 +209,31 @@ TEST(ExrParts, RefuseAttributesThatPromiseMoreThanTheyHold) {
                                    attribute("tiles", "tiledesc", word(1))}) {
         std::string file = smallFile();
         file.insert(kHeaderStart, lie);
-        EXPECT_TRUE(refuses(decodeExr(file, kLimits), {"exr: "}));
+        EXPECT_TRUE(refuses(decodeExr(file, kLimits), {"exr: ", "which it says that it is"}));
+    }
+}
+
+// Found by libFuzzer: the library reads a channel list on to its end, wherever that is, and took
+// the next bytes for the size of something to make room for.
+TEST(ExrParts, RefuseAChannelListThatGoesOnBeyondItsSize) {
+    const std::string list = std::string("f\0", 2) + word(2) + word(0) + word(1) + word(1);
+    for (const std::string& wrong : {list, list + list, list + '\0' + '\0', std::string()}) {
+        std::string file = smallFile();
+        file.insert(kHeaderStart, attribute("more", "chlist", wrong));
+        EXPECT_TRUE(refuses(decodeExr(file, kLimits), {"'more' is not 'chlist'"}));
+    }
+}
+
+TEST(ExrParts, TakeSoundAttributesThatTheyDoNotKnow) {
+    for (const std::string& other :
+         {attribute("preview", "preview", word(2) + word(1) + word(0) + word(0)),
+          attribute("names", "stringvector", word(2) + "ab" + word(0)),
+          attribute("times", "floatvector", word(0) + word(1)),
+          attribute("ours", "of our own", "any bytes")}) {
+        std::string file = smallFile();
+        file.insert(kHeaderStart, other);
+        // Where the pixels begin stands in the file: only the headers can be read of this one.
+        EXPECT_TRUE(refuses(decodeExr(file, kLimits), {"damaged"}));
     }
 }
 
