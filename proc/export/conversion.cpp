@@ -11,14 +11,14 @@ Result<std::vector<ConvertedFile>> convertTo(const ConversionSource& source,
     switch (wish.to) {
         case Format::Gonio: return toGonio(source, wish);
         case Format::Zemax: return toZemax(source, wish);
-        case Format::ExrTiles: return toExrTiles(source, wish);
+        case Format::ExrTiles: break;
         case Format::LightTools:
         case Format::Speos:
         case Format::Ssdd:
         case Format::Utia:
         case Format::Mbsdf: return toSpherical(source, wish);
         case Format::Merl: return toMerl(source, wish);
-        case Format::Rgl: return toRgl(source, wish);
+        case Format::Rgl: break;
         case Format::Bird:
         case Format::Astm:
         case Format::Pab:

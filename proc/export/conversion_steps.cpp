@@ -6,6 +6,7 @@
 #include "proc/export/one_band.h"
 #include "proc/export/resampling.h"
 #include "proc/formats/open.h"
+#include "proc/table/band_channels.h"
 
 namespace gonio::proc {
 namespace {
@@ -48,7 +49,7 @@ template <class Other>
 void count(PlainLosses& /*lost*/, const Other& /*table*/) {}
 
 /// What the source says, at its own values where nothing answers between them.
-std::vector<Probe> probesOf(const ConversionSource& source) {
+std::vector<Probe> probesOfSource(const ConversionSource& source) {
     if (source.scatterer) {
         const std::size_t lights = source.incidenceDeg.size() * source.rotationDeg.size();
         const std::size_t stride = std::max<std::size_t>(1, lights * kCells / kMostProbes);
@@ -122,13 +123,13 @@ void addResampling(ConvertedFile& file,
                    Format to,
                    std::optional<Band> band) {
     LossReport::Item item{Loss::Resampled, "values asked at the format's directions", asked.nodes};
-    const std::vector<Band> bands = band              ? std::vector{*band}
+    const std::vector<Band> bands = band                   ? std::vector{*band}
                                     : source.bands.empty() ? std::vector{Band::R}
                                                            : source.bands;
     Result<BrdfFile> back = decodeBrdf(to, file.bytes, "what was written");
     if (back) {
         if (auto lookup = lookupOver(std::move(*back))) {
-            const auto error = resamplingError(probesOf(source), **lookup, bands);
+            const auto error = resamplingError(probesOfSource(source), **lookup, bands);
             if (error) {
                 item.largestError = error->largest;
                 item.weightedError = error->weighted;

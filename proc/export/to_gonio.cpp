@@ -40,10 +40,8 @@ Result<ConvertedFile> ofAnswers(const ConversionSource& source, const Conversion
     Result<ConvertedFile> file = encoded(filled.set);
     if (!file) return file;
     if (source.file) addPlainLosses(file->loss, source);
-    addResampling(*file,
-                  source,
-                  {filled.asked, filled.unanswered, filled.extrapolated},
-                  Format::Gonio);
+    addResampling(
+        *file, source, {filled.asked, filled.unanswered, filled.extrapolated}, Format::Gonio);
     return file;
 }
 

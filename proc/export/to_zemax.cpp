@@ -1,6 +1,7 @@
 // Anything as Zemax tables, one file for each band.
 
 #include "proc/export/conversion_steps.h"
+#include "proc/formats/named_band.h"
 #include "proc/formats/zemax.h"
 #include "proc/table/specular_fill.h"
 
@@ -22,9 +23,8 @@ ConvertedFile written(SpecularTable table, const ConversionSource& source, const
 SpecularGrid gridFor(const ConversionSource& source, const ConversionWish& wish) {
     const auto* table = source.file ? source.file->as<SpecularTable>() : nullptr;
     const auto* spherical = source.file ? source.file->as<SphericalTable>() : nullptr;
-    const bool plane =
-        (table != nullptr && table->symmetry == TableSymmetry::PlaneSymmetrical) ||
-        (spherical != nullptr && spherical->planeSymmetrical);
+    const bool plane = (table != nullptr && table->symmetry == TableSymmetry::PlaneSymmetrical) ||
+                       (spherical != nullptr && spherical->planeSymmetrical);
     const bool turned = source.rotationDeg.size() > 1 || source.rotationDeg.front() != 0;
     const double step = wish.grid.stepOr(1);
     return {.symmetry = turned  ? TableSymmetry::Asymmetrical4D
@@ -44,13 +44,11 @@ ConvertedFile ofBand(const ConversionSource& source,
     const Channel channel = source.monochrome() ? channelsFor(source).front() : Channel::of(asked);
     ConvertedFile file = written(std::move(filled.table), source, channel);
     if (!source.monochrome()) file.suffix = bandSuffix(asked);
-    file.loss.add(Loss::Masked, "values of exactly 0, which read back as missing", filled.exactZero);
+    file.loss.add(
+        Loss::Masked, "values of exactly 0, which read back as missing", filled.exactZero);
     file.loss.add(Loss::Dropped, "uncertainties", filled.uncertain);
-    addResampling(file,
-                  source,
-                  {filled.nodes, filled.unanswered, filled.extrapolated},
-                  Format::Zemax,
-                  asked);
+    addResampling(
+        file, source, {filled.nodes, filled.unanswered, filled.extrapolated}, Format::Zemax, asked);
     return file;
 }
 
@@ -58,7 +56,7 @@ ConvertedFile ofBand(const ConversionSource& source,
 
 Converted toZemax(const ConversionSource& source, const ConversionWish& wish) {
     const auto* table = mayCopy(source, wish) ? source.file->as<SpecularTable>() : nullptr;
-    if (table != nullptr && table->colour != TableColour::LedBands) {
+    if (table != nullptr) {
         return std::vector{written(*table, source, channelsOf(*source.file).front())};
     }
     if (auto answers = mustAnswer(source, Format::Zemax); !answers) return answers.error();

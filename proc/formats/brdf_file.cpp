@@ -7,8 +7,11 @@
 
 #include "proc/formats/file_bytes.h"
 #include "proc/formats/gonio_exr.h"
+#include "proc/formats/mbsdf.h"
+#include "proc/formats/merl.h"
 #include "proc/formats/named_band.h"
 #include "proc/formats/sniff.h"
+#include "proc/formats/utia.h"
 #include "proc/formats/zemax.h"
 
 namespace gonio::proc {
@@ -34,7 +37,26 @@ struct Codec {
     Format format;
     Decoder decode;
 };
-constexpr std::array kCodecs{Codec{Format::Gonio, ofGonio}, Codec{Format::Zemax, ofZemax}};
+
+/// A reader whose table, metadata and warnings become the file's.
+template <auto parse>
+Result<BrdfFile> of(std::string_view bytes, std::string_view name) {
+    auto read = parse(bytes, name);
+    if (!read) return read.error();
+    return BrdfFile{.content = std::move(read->content),
+                    .about = std::move(read->about),
+                    .warnings = std::move(read->warnings)};
+}
+
+auto parseRawUtia(std::string_view bytes, std::string_view name) {
+    return parseUtia(bytes, name, UtiaScale::Raw);
+}
+
+constexpr std::array kCodecs{Codec{Format::Gonio, ofGonio},
+                             Codec{Format::Zemax, ofZemax},
+                             Codec{Format::Merl, of<parseMerl>},
+                             Codec{Format::Utia, of<parseRawUtia>},
+                             Codec{Format::Mbsdf, of<parseMbsdf>}};
 
 /// Of one channel: what its name, its wavelength or the file's name says.
 std::optional<Band> soleBand(const std::vector<Channel>& channels,
@@ -76,7 +98,8 @@ Result<BrdfFile> readBrdf(const std::filesystem::path& path, std::optional<Forma
 }
 
 std::vector<Channel> channelsOf(const BrdfFile& file) {
-    if (file.as<SampleSet>() != nullptr) return Channel::ofBands();
+    const bool bands = file.as<SampleSet>() != nullptr || file.as<HalfDifferenceTable>() != nullptr;
+    if (bands) return Channel::ofBands();
     if (const auto* spherical = file.as<SphericalTable>()) return spherical->channels;
     if (const auto* rows = file.as<BrdfRows>()) return rows->channels;
     const auto& table = *file.as<SpecularTable>();

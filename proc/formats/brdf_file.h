@@ -12,6 +12,7 @@
 #include "proc/core/result.h"
 #include "proc/formats/format.h"
 #include "proc/table/brdf_rows.h"
+#include "proc/table/half_difference_table.h"
 #include "proc/table/metadata.h"
 #include "proc/table/sample_set.h"
 #include "proc/table/specular_table.h"
@@ -19,7 +20,8 @@
 
 namespace gonio::proc {
 
-using BrdfContent = std::variant<SampleSet, SpecularTable, SphericalTable, BrdfRows>;
+using BrdfContent =
+    std::variant<SampleSet, SpecularTable, SphericalTable, HalfDifferenceTable, BrdfRows>;
 
 struct BrdfFile {
     Format format = Format::Gonio;
@@ -29,6 +31,7 @@ struct BrdfFile {
     /// Of a file of one value per pair: the LEDs' band that it is, where its wavelength or else its
     /// name tells.
     std::optional<Band> band{};
+    std::vector<Band> bands{};  ///< of several, those that are wanted; empty: all
 
     /// The content where it is this kind of table, else null.
     template <class Table>
@@ -49,6 +52,9 @@ struct BrdfFile {
 
 /// What the file's values are: bands, wavelengths, tristimulus values.
 [[nodiscard]] std::vector<Channel> channelsOf(const BrdfFile& file);
+
+/// A file of more incidences than this is finer than the LEDs: it is asked at theirs.
+inline constexpr std::size_t kMostFileIncidences = 36;
 
 /// Incidences that the file holds, ascending, each once; empty for one that holds all of them.
 [[nodiscard]] std::vector<Radians> incidencesOf(const BrdfFile& file);

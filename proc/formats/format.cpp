@@ -89,6 +89,11 @@ Result<Format> parseFormat(std::string_view text) {
                  "format '" + std::string(text) + "' is not known; known: " + namesOf(all)};
 }
 
+bool listsDirections(Format format) {
+    return format == Format::Bird || format == Format::Astm || format == Format::Pab ||
+           format == Format::Alta || format == Format::Csv;
+}
+
 Result<Format> formatToWrite(const std::filesystem::path& path) {
     const std::string extension = lower(path.extension().string());
     std::vector<Format> found;

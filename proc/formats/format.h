@@ -51,6 +51,9 @@ struct FormatFacts {
 /// A Usage error that lists the names for what is none.
 [[nodiscard]] Result<Format> parseFormat(std::string_view name);
 
+/// Its files list directions in any order, and nothing answers between them but an estimator.
+[[nodiscard]] bool listsDirections(Format format);
+
 /// The format that a file of this name is written in. Usage error for an extension that names none,
 /// or several: it says which, and that --to decides.
 [[nodiscard]] Result<Format> formatToWrite(const std::filesystem::path& path);

@@ -1,7 +1,10 @@
 #include "proc/formats/open.h"
 
+#include "proc/table/band_channels.h"
+#include "proc/table/half_difference_lookup.h"
 #include "proc/table/sample_lookup.h"
 #include "proc/table/specular_lookup.h"
+#include "proc/table/spherical_lookup.h"
 
 namespace gonio::proc {
 namespace {
@@ -18,7 +21,19 @@ Result<Opened> over(SpecularTable table) {
     return Opened(std::make_unique<SpecularLookup>(std::move(*lookup)));
 }
 
-Result<Opened> over(const SphericalTable& /*table*/) { return Error{ErrorKind::File, "not yet"}; }
+Result<Opened> over(SphericalTable table) {
+    const auto bands = bandChannels(table.channels);
+    if (!bands) return bands.error();
+    Result<SphericalLookup> lookup = SphericalLookup::over(std::move(table), *bands);
+    if (!lookup) return lookup.error();
+    return Opened(std::make_unique<SphericalLookup>(std::move(*lookup)));
+}
+
+Result<Opened> over(HalfDifferenceTable table) {
+    Result<HalfDifferenceLookup> lookup = HalfDifferenceLookup::over(std::move(table));
+    if (!lookup) return lookup.error();
+    return Opened(std::make_unique<HalfDifferenceLookup>(std::move(*lookup)));
+}
 
 Result<Opened> over(const BrdfRows& /*rows*/) {
     return Error{ErrorKind::Usage, "scattered values: between them answers --estimator auto"};

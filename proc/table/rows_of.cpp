@@ -33,18 +33,13 @@ void addCell(BrdfRows& rows, const CellSamples& cells, std::size_t cell) {
     rows.flags.push_back(at.flags);
 }
 
-/// To the other side of the surface.
-Direction through(const Direction& wo) { return *Direction::fromVector({wo.x(), wo.y(), -wo.z()}); }
-
 void addNode(BrdfRows& rows, const SpecularTable& table, TableNode node) {
     bool any = false;
     for (std::size_t plane = 0; plane < table.planes.size(); ++plane) {
         any = any || table.hasData(plane, node);
     }
     if (!any || table.repeatsDirection(node)) return;
-    LightView pair = table.pairAt(node);
-    if (table.kind == ScatterKind::Btdf) pair.out = through(pair.out);
-    rows.pairs.push_back(pair);
+    rows.pairs.push_back(table.pairAt(node));
     for (std::size_t plane = 0; plane < table.planes.size(); ++plane) {
         const bool has = table.hasData(plane, node);
         rows.f.push_back(has ? table.planes[plane].f[table.index(node)] : kNan);

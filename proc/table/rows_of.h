@@ -41,8 +41,6 @@ struct SampleOfRows {
 
 /// Lights further than this from each other, as unit vectors, are two.
 inline constexpr double kSameLightDistance = 1e-6;
-/// Tables of a sample made of rows; each takes some 2 MB.
-inline constexpr std::size_t kMostTables = 200;
 
 /// Channels as bandChannels() assigns them; a single one that is named R, G or B is that band, any
 /// other single one is all three. Usage error for channels that are no bands, and for more lights

@@ -30,7 +30,8 @@ LightView SpecularTable::pairAt(TableNode node) const {
     const Direction wi = Direction::fromSpherical(theta, phiIn);
     const SpecularRelative at{.radial = Radians::fromDegrees(radialDeg[node.radial]),
                               .azimuth = Radians::fromDegrees(azimuthDeg[node.azimuth])};
-    return {.in = wi, .out = fromSpecularRelative(wi, at, phiIn)};
+    const Direction wo = fromSpecularRelative(wi, at, phiIn);
+    return {.in = wi, .out = kind == ScatterKind::Btdf ? acrossSurface(wo) : wo};
 }
 
 bool SpecularTable::canHoldData(TableNode node) const {

@@ -28,7 +28,8 @@ enum class ScatterKind {
 /// Xyz planes are CIE tristimulus values, never the LED bands.
 enum class TableColour {
     Monochrome,
-    Xyz
+    Xyz,
+    LedBands  ///< R, G, B: no Zemax file
 };
 
 /// One node: positions on the four axes.
@@ -47,7 +48,7 @@ struct SpecularTable {
     ScatterKind kind = ScatterKind::Brdf;
     TableColour colour = TableColour::Monochrome;
     std::vector<double> rotationDeg{0}, incidenceDeg, azimuthDeg, radialDeg;
-    std::vector<TablePlane> planes;     ///< one, or X, Y, Z
+    std::vector<TablePlane> planes;     ///< one, or X, Y, Z, or R, G, B
     std::vector<std::string> comments;  ///< free text: wavelength, sample, instrument
 
     /// Nodes of one plane.
@@ -55,8 +56,10 @@ struct SpecularTable {
     [[nodiscard]] std::size_t index(TableNode node) const;
     [[nodiscard]] std::size_t tisIndex(TableNode node) const;
 
-    /// The light and the view of a node. Rotation r turns the sample by +r under a fixed light: in
-    /// the sample's frame the light stands at azimuth -r. The light of incidence 0 is the normal.
+    /// The light and the view of a node; of transmission the view on the other side, across the
+    /// surface from where reflection would be. Rotation r turns the sample by +r under a fixed
+    /// light: in the sample's frame the light stands at azimuth -r. The light of incidence 0 is the
+    /// normal.
     [[nodiscard]] LightView pairAt(TableNode node) const;
     /// Above the horizon by more than rounding; for BTDF the other side of the surface counts.
     [[nodiscard]] bool canHoldData(TableNode node) const;

@@ -162,15 +162,44 @@ TEST(SpecularLookup, RefusesWhatHasNoFOfTheLedBands) {
     SpecularTable xyz = tableOf(TableSymmetry::PlaneSymmetrical, linear);
     xyz.colour = TableColour::Xyz;
     xyz.planes.resize(3, xyz.planes[0]);
-    SpecularTable btdf = tableOf(TableSymmetry::PlaneSymmetrical, linear);
-    btdf.kind = ScatterKind::Btdf;
+    SpecularTable two = tableOf(TableSymmetry::PlaneSymmetrical, linear);
+    two.colour = TableColour::LedBands;
+    two.planes.resize(2, two.planes[0]);
     SpecularTable torn = tableOf(TableSymmetry::PlaneSymmetrical, linear);
     torn.planes[0].f.pop_back();
-    for (const SpecularTable& table : {xyz, btdf, torn, SpecularTable{}}) {
+    for (const SpecularTable& table : {xyz, two, torn, SpecularTable{}}) {
         const auto made = SpecularLookup::over(table);
         ASSERT_FALSE(made);
         EXPECT_EQ(made.error().kind, ErrorKind::File);
     }
+}
+
+TEST(SpecularLookup, AnswersTransmissionBelowTheSurfaceAndNotAbove) {
+    SpecularTable table = tableOf(TableSymmetry::PlaneSymmetrical, linear);
+    table.kind = ScatterKind::Btdf;
+    const SpecularLookup at = lookup(table);
+    const LightView pair = table.pairAt({0, 1, 1, 1});
+    EXPECT_LT(pair.out.z(), 0);
+    const Answer answer = at.answer(pair);
+    EXPECT_EQ(answer.source, Source::Measured);
+    EXPECT_NEAR(answer.f[Band::G], table.planes[0].f[table.index({0, 1, 1, 1})], 1e-12);
+    const Answer above = at.answer({.in = pair.in, .out = acrossSurface(pair.out)});
+    EXPECT_TRUE(std::isnan(above.f[Band::G]));
+    EXPECT_TRUE(above.flags.has(Flag::BelowHorizon));
+}
+
+TEST(SpecularLookup, AnswersBandByBandWhereThereAreThree) {
+    SpecularTable table = tableOf(TableSymmetry::PlaneSymmetrical, linear);
+    table.colour = TableColour::LedBands;
+    table.planes.resize(3, table.planes[0]);
+    for (double& f : table.planes[1].f) f *= 2;
+    table.planes[2].f[table.index({0, 1, 1, 1})] = std::numeric_limits<double>::quiet_NaN();
+    const SpecularLookup at = lookup(table);
+    EXPECT_EQ(at.bandCount(), BandCount::Three);
+    const Answer answer = at.answer(table.pairAt({0, 1, 1, 1}));
+    EXPECT_EQ(answer.f[Band::G], 2 * answer.f[Band::R]);
+    EXPECT_TRUE(std::isnan(answer.f[Band::B]));
+    EXPECT_TRUE(answer.flags.has(Flag::Measured));
 }
 
 }  // namespace
