@@ -3,12 +3,18 @@
 #include <algorithm>
 #include <array>
 
+#include "proc/formats/alta.h"
+#include "proc/formats/astm.h"
 #include "proc/formats/bird.h"
+#include "proc/formats/exr_atlas.h"
+#include "proc/formats/exr_tiles.h"
 #include "proc/formats/gonio_exr.h"
 #include "proc/formats/graw_exr.h"
+#include "proc/formats/klems.h"
 #include "proc/formats/lighttools.h"
 #include "proc/formats/mbsdf.h"
 #include "proc/formats/merl.h"
+#include "proc/formats/pab.h"
 #include "proc/formats/points_csv.h"
 #include "proc/formats/rgl.h"
 #include "proc/formats/scattered_csv.h"
@@ -31,6 +37,7 @@ std::optional<std::string> bytesOf(const proc::Written& written) { return writte
 std::optional<std::string> bytesOf(const Result<proc::Written>& written) {
     return written ? std::optional(written->bytes) : std::nullopt;
 }
+std::optional<std::string> bytesOf(const std::optional<std::string>& written) { return written; }
 std::optional<std::string> bytesOf(const Result<std::string>& written) {
     return written ? std::optional(*written) : std::nullopt;
 }
@@ -95,6 +102,29 @@ Complaint ssdd(Bytes bytes) {
 Complaint csv(Bytes bytes) {
     return withMetadata(bytes, proc::parseScatteredCsv, proc::writeScatteredCsv);
 }
+Complaint astm(Bytes bytes) { return withMetadata(bytes, proc::parseAstm, proc::writeAstm); }
+Complaint pab(Bytes bytes) {
+    const auto first = [](const auto& rows, const auto& about) -> std::optional<std::string> {
+        const auto written = proc::writePab(rows, about);
+        if (!written || written->files.empty()) return std::nullopt;
+        return written->files[0].bytes;
+    };
+    return withMetadata(bytes, proc::parsePab, first);
+}
+Complaint alta(Bytes bytes) { return withMetadata(bytes, proc::parseAlta, proc::writeAlta); }
+Complaint exrTiles(Bytes bytes) {
+    return withMetadata(bytes, proc::decodeExrTiles, [](const auto& table, const auto& about) {
+        return proc::encodeExrTiles(table, about);
+    });
+}
+Complaint exrAtlas(Bytes bytes) {
+    return thereAndBack(bytes, proc::decodeExrAtlas, [](const auto& files) {
+        std::vector<proc::AtlasSample> samples;
+        for (const auto& file : files) samples.push_back({file.content, file.about});
+        return proc::encodeExrAtlas(samples);
+    });
+}
+Complaint klems(Bytes bytes) { return only(bytes, proc::parseKlems); }
 Complaint stil(Bytes bytes) { return only(bytes, proc::parseStilText); }
 Complaint points(Bytes bytes) { return only(bytes, proc::parsePoints); }
 Complaint sniff(Bytes bytes) {
@@ -116,7 +146,13 @@ constexpr std::array kReaders{
     Reader{"speos", true, soundSpeos, speos},
     Reader{"mbsdf", false, soundMbsdf, mbsdf},
     Reader{"ssdd", true, soundSsdd, ssdd},
+    Reader{"astm", true, soundAstm, astm},
+    Reader{"pab", true, soundPab, pab},
+    Reader{"alta", true, soundAlta, alta},
     Reader{"csv", true, soundCsv, csv},
+    Reader{"exr-tiles", false, soundExrTiles, exrTiles},
+    Reader{"exr-atlas", false, soundExrAtlas, exrAtlas},
+    Reader{"klems", true, soundKlems, klems},
     Reader{"stil", true, soundStil, stil},
     Reader{"points", true, soundPoints, points},
     Reader{"sniff", true, soundHeads, sniff},

@@ -3,11 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "proc/formats/alta.h"
+#include "proc/formats/astm.h"
 #include "proc/formats/bird.h"
+#include "proc/formats/exr_atlas.h"
+#include "proc/formats/exr_tiles.h"
 #include "proc/formats/gonio_exr.h"
 #include "proc/formats/graw_exr.h"
 #include "proc/formats/lighttools.h"
 #include "proc/formats/mbsdf.h"
+#include "proc/formats/pab.h"
 #include "proc/formats/rgl.h"
 #include "proc/formats/scattered_csv.h"
 #include "proc/formats/speos.h"
@@ -154,6 +159,81 @@ Files soundCsv() {
     return {proc::writeScatteredCsv(smallRows({{}}, false), {}).bytes,
             proc::writeScatteredCsv(smallRows(Channel::ofBands(), true), smallAbout()).bytes,
             "wi_x,wi_y,wi_z,wo_x,wo_y,wo_z,f_650nm,\"other, column\"\n0,0,1,1,0,1,0.5,x\n"};
+}
+
+Files soundAstm() {
+    return {proc::writeAstm(smallRows(Channel::ofBands(), false), smallAbout()).bytes,
+            "KEY a value\nNUM_POINTS 2\nVARS theta_i,theta_s,phi_s,550nm,650nm\n"
+            "0.1,0.2,-0.3,1,2\n\n0.1,2.2,0.3,-1,2\n"};
+}
+
+Files soundPab() {
+    Files files;
+    for (const auto& channels :
+         {std::vector<Channel>(1), std::vector<Channel>{{"X", {}}, {"Y", {}}, {"Z", {}}}}) {
+        files.push_back(proc::writePab(smallRows(channels, false), smallAbout())->files[0].bytes);
+    }
+    files.push_back(
+        "#data written by hand\n#sample_name \"blind\"\n#incident_angle 30 90\n"
+        "#upphi 45\n#format: theta phi DSF\n60 270 0.25\n120.000\t10 0.5\n");
+    return files;
+}
+
+Files soundAlta() {
+    const std::string cosine =
+        "#SAMPLE \"tape\"\n# a comment\n#DIM 3 1\n#VS 0\n"
+        "#PARAM_IN ISOTROPIC_TL_TV_PROJ_DPHI\n#PARAM_OUT INV_STERADIAN_COSINE_FACTOR\n"
+        "0.25  0.5 0   0.125\n0.25\t0\t-1\t0.5\n";
+    Files files{proc::writeAlta(smallRows(Channel::ofBands(), false), smallAbout()).bytes, cosine};
+    for (const char* other : {"RUSIN_TH_TD_PD", "ISOTROPIC_TV_TL_DPHI"}) {
+        files.push_back(replaced(cosine, "ISOTROPIC_TL_TV_PROJ_DPHI", other));
+    }
+    return files;
+}
+
+Files soundExrTiles() {
+    proc::SpecularTable table;
+    const auto grid = proc::exrTileGrid({0, 30}, {8, 4});
+    table.symmetry = proc::TableSymmetry::Asymmetrical;
+    table.incidenceDeg = grid.incidenceDeg;
+    table.azimuthDeg = grid.azimuthDeg;
+    table.radialDeg = grid.radialDeg;
+    proc::TablePlane plane;
+    plane.f.assign(table.nodeCount(), 0.25);
+    plane.tis.assign(2, 0.5);
+    table.planes = {plane};
+    return {proc::encodeExrTiles(table, smallAbout())->bytes,
+            proc::encodeExrTiles(table, {}, {.half = true, .columns = 1})->bytes};
+}
+
+/// Two samples that are one another's metadata's only difference.
+Files soundExrAtlas() {
+    const auto tiles = proc::decodeExrTiles(soundExrTiles().front(), "tiles");
+    const proc::AtlasSample sample{.table = tiles->content, .about = smallAbout()};
+    const std::vector samples(2, sample);
+    return {proc::encodeExrAtlas(samples)->bytes, soundExrTiles().front()};
+}
+
+/// A basis of one cap and a ring of two patches.
+Files soundKlems() {
+    return {
+        "<?xml version=\"1.0\"?>\n<WindowElement xmlns=\"http://windows.lbl.gov\">\n"
+        "<Optical><Layer>\n<Material><Name> a shade </Name><Thickness unit=\"Millimeter\">1"
+        "</Thickness></Material>\n<DataDefinition>\n"
+        "<IncidentDataStructure>Columns</IncidentDataStructure>\n"
+        "<AngleBasis><AngleBasisName>own</AngleBasisName>\n"
+        "<AngleBasisBlock><Theta>0</Theta><ThetaBounds><LowerTheta>0</LowerTheta>"
+        "<UpperTheta>30</UpperTheta></ThetaBounds>\n<nPhis>1</nPhis></AngleBasisBlock>\n"
+        "<AngleBasisBlock><Theta>60</Theta><ThetaBounds><LowerTheta>30</LowerTheta>"
+        "<UpperTheta>90</UpperTheta></ThetaBounds>\n<nPhis>2</nPhis></AngleBasisBlock>\n"
+        "</AngleBasis></DataDefinition>\n<WavelengthData>\n"
+        "<Wavelength unit=\"Integral\">Visible</Wavelength>\n<WavelengthDataBlock>\n"
+        "<WavelengthDataDirection>Reflection Front</WavelengthDataDirection>\n"
+        "<ColumnAngleBasis>own</ColumnAngleBasis>\n<RowAngleBasis>own</RowAngleBasis>\n"
+        "<ScatteringDataType>BTDF</ScatteringDataType>\n<!-- nine -->\n<ScatteringData>\n"
+        "0.01, 0.02, 0.03,\n0.04, 0.05, 0.06,\n0.07, 0.08, 0.09\n"
+        "</ScatteringData></WavelengthDataBlock></WavelengthData>\n"
+        "</Layer></Optical></WindowElement>\n"};
 }
 
 /// One scan of 3 thetas x 2 phis.

@@ -21,6 +21,12 @@ using Files = std::vector<std::string>;
 [[nodiscard]] Files soundMbsdf();
 [[nodiscard]] Files soundSsdd();
 [[nodiscard]] Files soundCsv();
+[[nodiscard]] Files soundAstm();
+[[nodiscard]] Files soundPab();
+[[nodiscard]] Files soundAlta();
+[[nodiscard]] Files soundExrTiles();
+[[nodiscard]] Files soundExrAtlas();
+[[nodiscard]] Files soundKlems();
 [[nodiscard]] Files soundStil();
 [[nodiscard]] Files soundPoints();
 /// Beginnings of files, for whoever tells formats apart.
