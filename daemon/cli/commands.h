@@ -161,6 +161,16 @@ struct ConvertOptions {
 };
 Result<void> convert(const CommonOptions& common, const ConvertOptions& options);
 
+struct AtlasOptions {
+    std::vector<std::string> files;
+    std::filesystem::path output;
+    std::string grid;                ///< as of convert
+    std::string estimator = "none";  ///< as of convert
+    bool half = false;               ///< 16-bit floats
+};
+/// Several samples as one picture, tile by tile, for shaders.
+Result<void> atlas(const CommonOptions& common, const AtlasOptions& options);
+
 struct MergeCommandOptions {
     std::vector<std::string> files;
     std::filesystem::path output;  ///< .gonio or .csv

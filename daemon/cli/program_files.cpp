@@ -95,6 +95,17 @@ void Program::addFiles() {
         "what answers a table's directions: none (what was measured), auto, or by name");
     sub->add_flag("--half", convert.half, "16-bit floats, where the format has them");
 
+    sub = command(*app, "atlas", "several samples as one EXR picture for shaders", [this] {
+        return daemon::atlas(common, atlas);
+    });
+    sub->add_option("files", atlas.files, "files, sample:NAME or model:SPEC")->required();
+    sub->add_option("-o,--output", atlas.output, "the .exr file to write")->required();
+    sub->add_option("--grid", atlas.grid, "incidences and pixels in degrees, as of convert");
+    sub->add_option("--estimator",
+                    atlas.estimator,
+                    "what answers between the measured directions: none, auto, or by name");
+    sub->add_flag("--half", atlas.half, "16-bit floats");
+
     sub =
         command(*app, "merge", "make one file of rotations, repeats or bands of a sample", [this] {
             return daemon::merge(common, merge);

@@ -11,7 +11,7 @@ Result<std::vector<ConvertedFile>> convertTo(const ConversionSource& source,
     switch (wish.to) {
         case Format::Gonio: return toGonio(source, wish);
         case Format::Zemax: return toZemax(source, wish);
-        case Format::ExrTiles: break;
+        case Format::ExrTiles: return toExrTiles(source, wish);
         case Format::LightTools:
         case Format::Speos:
         case Format::Ssdd:

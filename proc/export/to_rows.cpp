@@ -4,7 +4,10 @@
 
 #include "proc/export/conversion_steps.h"
 #include "proc/export/sample_fill.h"
+#include "proc/formats/alta.h"
+#include "proc/formats/astm.h"
 #include "proc/formats/bird.h"
+#include "proc/formats/pab.h"
 #include "proc/formats/scattered_csv.h"
 #include "proc/table/rows_of.h"
 
@@ -22,7 +25,7 @@ std::optional<BrdfRows> ownRows(const ConversionSource& source) {
     if (const auto* sample = file.as<SampleSet>()) return rowsOf(*sample);
     if (const auto* spherical = file.as<SphericalTable>()) return rowsOf(*spherical);
     const auto* table = file.as<SpecularTable>();
-    if (table == nullptr) return std::nullopt;
+    if (table == nullptr || table->colour == TableColour::LedBands) return std::nullopt;
     return rowsOf(*table, channelsFor(source).front());
 }
 
@@ -50,8 +53,25 @@ std::vector<ConvertedFile> one(Written file) {
     return {ConvertedFile{"", std::move(file.bytes), std::move(file.loss)}};
 }
 
-std::vector<ConvertedFile> written(const BrdfRows& rows, Format to, const Metadata& about) {
-    return to == Format::Bird ? one(writeBird(rows, about)) : one(writeScatteredCsv(rows, about));
+/// A file for each light.
+Converted toPab(const BrdfRows& rows, const Metadata& about) {
+    Result<WrittenPab> written = writePab(rows, about);
+    if (!written) return written.error();
+    std::vector<ConvertedFile> files;
+    for (PabFile& file : written->files) files.push_back({file.suffix, std::move(file.bytes), {}});
+    if (!files.empty()) files.front().loss = std::move(written->loss);
+    if (files.size() == 1) files.front().suffix.clear();
+    return files;
+}
+
+Converted written(const BrdfRows& rows, Format to, const Metadata& about) {
+    switch (to) {
+        case Format::Bird: return one(writeBird(rows, about));
+        case Format::Astm: return one(writeAstm(rows, about));
+        case Format::Pab: return toPab(rows, about);
+        case Format::Alta: return one(writeAlta(rows, about));
+        default: return one(writeScatteredCsv(rows, about));
+    }
 }
 
 }  // namespace
@@ -59,14 +79,13 @@ std::vector<ConvertedFile> written(const BrdfRows& rows, Format to, const Metada
 Converted toRows(const ConversionSource& source, const ConversionWish& wish) {
     Result<Rows> rows = rowsFor(source, wish);
     if (!rows) return rows.error();
-    std::vector<ConvertedFile> files = written(rows->rows, wish.to, source.about);
-    if (rows->asked) {
-        files.front().loss.items.insert(
-            files.front().loss.items.begin(),
-            {Loss::Resampled, "values asked at the cells of each incidence", rows->asked->nodes});
-        files.front().loss.add(
-            Loss::Extrapolated, "values from beyond what was measured", rows->asked->extrapolated);
-    }
+    Converted files = written(rows->rows, wish.to, source.about);
+    if (!files || !rows->asked) return files;
+    LossReport& loss = files->front().loss;
+    loss.items.insert(
+        loss.items.begin(),
+        {Loss::Resampled, "values asked at the cells of each incidence", rows->asked->nodes});
+    loss.add(Loss::Extrapolated, "values from beyond what was measured", rows->asked->extrapolated);
     return files;
 }
 

@@ -7,6 +7,7 @@
 #include "proc/formats/lighttools.h"
 #include "proc/formats/mbsdf.h"
 #include "proc/formats/speos.h"
+#include "proc/formats/ssdd.h"
 #include "proc/formats/utia.h"
 #include "proc/table/specular_fill.h"
 
@@ -64,6 +65,7 @@ Result<Written> written(const SphericalTable& table,
         case Format::Speos:
             return table.isotropic() && !wish.anisotropic ? writeSpeosBrdf(table, about)
                                                           : writeSpeosAnisotropic(table, about);
+        case Format::Ssdd: return writeSsdd(table, about);
         case Format::Utia: return writeUtia(table, about);
         default: return writeMbsdf(table, about);
     }

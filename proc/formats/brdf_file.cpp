@@ -5,17 +5,24 @@
 #include <cmath>
 #include <utility>
 
+#include "proc/formats/alta.h"
+#include "proc/formats/astm.h"
 #include "proc/formats/bird.h"
+#include "proc/formats/exr_atlas.h"
+#include "proc/formats/exr_tiles.h"
 #include "proc/formats/file_bytes.h"
 #include "proc/formats/gonio_exr.h"
+#include "proc/formats/klems.h"
 #include "proc/formats/lighttools.h"
 #include "proc/formats/mbsdf.h"
 #include "proc/formats/merl.h"
 #include "proc/formats/named_band.h"
+#include "proc/formats/pab.h"
 #include "proc/formats/rgl.h"
 #include "proc/formats/scattered_csv.h"
 #include "proc/formats/sniff.h"
 #include "proc/formats/speos.h"
+#include "proc/formats/ssdd.h"
 #include "proc/formats/stil_text.h"
 #include "proc/formats/utia.h"
 #include "proc/formats/words.h"
@@ -65,6 +72,30 @@ auto parseAnyLightTools(std::string_view text, std::string_view name) {
     return stil ? parseStilText(text, name) : parseLightTools(text, name);
 }
 
+Result<BrdfFile> ofSsdd(std::string_view bytes, std::string_view name) {
+    auto read = parseSsdd(bytes, name);
+    if (!read) return read.error();
+    BrdfFile file{
+        .content = {}, .about = std::move(read->about), .warnings = std::move(read->warnings)};
+    std::visit([&](auto& table) { file.content = std::move(table); }, read->content);
+    return file;
+}
+
+/// The only sample of an atlas; several are a Usage error.
+Result<BrdfFile> ofAtlas(std::string_view bytes, std::string_view name) {
+    auto read = decodeExrAtlas(bytes, name);
+    if (!read) return read.error();
+    if (read->size() != 1) {
+        return Error{ErrorKind::Usage,
+                     std::string(name) + ": an atlas of " + std::to_string(read->size()) +
+                         " samples, made for shaders; what it was made of can be read instead"};
+    }
+    FileRead<SpecularTable>& one = read->front();
+    return BrdfFile{.content = std::move(one.content),
+                    .about = std::move(one.about),
+                    .warnings = std::move(one.warnings)};
+}
+
 constexpr std::array kCodecs{Codec{Format::Gonio, ofGonio},
                              Codec{Format::Zemax, ofZemax},
                              Codec{Format::LightTools, of<parseAnyLightTools>},
@@ -74,7 +105,14 @@ constexpr std::array kCodecs{Codec{Format::Gonio, ofGonio},
                              Codec{Format::Bird, of<parseBird>},
                              Codec{Format::Speos, of<parseSpeos>},
                              Codec{Format::Mbsdf, of<parseMbsdf>},
-                             Codec{Format::Csv, of<parseScatteredCsv>}};
+                             Codec{Format::Astm, of<parseAstm>},
+                             Codec{Format::Ssdd, ofSsdd},
+                             Codec{Format::Pab, of<parsePab>},
+                             Codec{Format::Alta, of<parseAlta>},
+                             Codec{Format::Csv, of<parseScatteredCsv>},
+                             Codec{Format::ExrTiles, of<decodeExrTiles>},
+                             Codec{Format::ExrAtlas, ofAtlas},
+                             Codec{Format::Klems, of<parseKlems>}};
 
 /// Of one channel: what its name, its wavelength or the file's name says.
 std::optional<Band> soleBand(const std::vector<Channel>& channels,
@@ -121,7 +159,9 @@ std::vector<Channel> channelsOf(const BrdfFile& file) {
     if (const auto* spherical = file.as<SphericalTable>()) return spherical->channels;
     if (const auto* tensor = file.as<TensorTable>()) return tensor->channels;
     if (const auto* rows = file.as<BrdfRows>()) return rows->channels;
+    if (file.as<KlemsTable>() != nullptr) return {Channel{}};
     const auto& table = *file.as<SpecularTable>();
+    if (table.colour == TableColour::LedBands) return Channel::ofBands();
     if (table.colour == TableColour::Xyz) return {{"X", {}}, {"Y", {}}, {"Z", {}}};
     const auto nm = wavelengthIn(file.about.comments);
     if (!file.band) return {{"", nm}};

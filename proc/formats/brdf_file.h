@@ -13,6 +13,7 @@
 #include "proc/formats/format.h"
 #include "proc/table/brdf_rows.h"
 #include "proc/table/half_difference_table.h"
+#include "proc/table/klems_table.h"
 #include "proc/table/metadata.h"
 #include "proc/table/sample_set.h"
 #include "proc/table/specular_table.h"
@@ -21,8 +22,13 @@
 
 namespace gonio::proc {
 
-using BrdfContent =
-    std::variant<SampleSet, SpecularTable, SphericalTable, HalfDifferenceTable, TensorTable, BrdfRows>;
+using BrdfContent = std::variant<SampleSet,
+                                 SpecularTable,
+                                 SphericalTable,
+                                 HalfDifferenceTable,
+                                 TensorTable,
+                                 KlemsTable,
+                                 BrdfRows>;
 
 struct BrdfFile {
     Format format = Format::Gonio;

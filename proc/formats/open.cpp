@@ -2,6 +2,7 @@
 
 #include "proc/table/band_channels.h"
 #include "proc/table/half_difference_lookup.h"
+#include "proc/table/klems_lookup.h"
 #include "proc/table/sample_lookup.h"
 #include "proc/table/specular_lookup.h"
 #include "proc/table/spherical_lookup.h"
@@ -40,6 +41,13 @@ Result<Opened> over(TensorTable table) {
     Result<TensorBsdf> tensor = TensorBsdf::over(std::move(table));
     if (!tensor) return tensor.error();
     return Opened(std::make_unique<TensorBsdf>(std::move(*tensor)));
+}
+
+/// The front's visible spectrum.
+Result<Opened> over(KlemsTable table) {
+    Result<KlemsLookup> lookup = KlemsLookup::over(std::move(table), {});
+    if (!lookup) return lookup.error();
+    return Opened(std::make_unique<KlemsLookup>(std::move(*lookup)));
 }
 
 Result<Opened> over(const BrdfRows& /*rows*/) {

@@ -21,7 +21,8 @@ public:
         }
     }
 
-    void direction(std::size_t channel, double f, const Direction& wo) {
+    /// A value of which only the side is known.
+    void side(std::size_t channel, double f, bool transmission) {
         ChannelFacts& facts = counts_.channels[channel];
         ++facts.directions;
         if (std::isnan(f)) return;
@@ -29,7 +30,11 @@ public:
         facts.negative += f < 0 ? 1U : 0U;
         facts.least = std::fmin(facts.least, f);
         facts.largest = std::fmax(facts.largest, f);
-        (wo.z() < 0 ? counts_.transmission : counts_.reflection) = true;
+        (transmission ? counts_.transmission : counts_.reflection) = true;
+    }
+    void direction(std::size_t channel, double f, const Direction& wo) {
+        side(channel, f, wo.z() < 0);
+        if (std::isnan(f)) return;
         const double theta = wo.theta().degrees();
         if (!counts_.thetaOutDeg) counts_.thetaOutDeg = {theta, theta};
         counts_.thetaOutDeg->from = std::min(counts_.thetaOutDeg->from, theta);
@@ -114,6 +119,12 @@ void count(Counter& counter, const TensorTable& table) {
     }
 }
 
+void count(Counter& counter, const KlemsTable& table) {
+    for (const KlemsMatrix& matrix : table.matrices) {
+        for (const double f : matrix.f) counter.side(0, f, matrix.transmission);
+    }
+}
+
 void count(Counter& counter, const BrdfRows& rows) {
     for (std::size_t i = 0; i < rows.pairs.size(); ++i) {
         const Direction& wi = rows.pairs[i].in;
@@ -130,7 +141,6 @@ FileCounts countsOf(const BrdfFile& file) {
     Counter counter(channelsOf(file));
     std::visit([&](const auto& content) { count(counter, content); }, file.content);
     FileCounts counts = counter.finished();
-    if (file.as<TensorTable>() != nullptr) counts.thetaOutDeg.reset();
     if (file.as<SampleSet>() != nullptr) {
         std::erase_if(counts.channels, [](const ChannelFacts& c) { return c.directions == 0; });
     }

@@ -78,6 +78,20 @@ std::vector<TotalFacts> totals(const SphericalTable& table, const std::vector<Ch
     return all;
 }
 
+/// Patch by patch of the light, its own centre in place of an incidence.
+std::vector<TotalFacts> totals(const KlemsTable& table, const std::vector<Channel>& /*channels*/) {
+    std::vector<TotalFacts> all;
+    for (const KlemsMatrix& matrix : table.matrices) {
+        const std::vector<double> shares = table.hemispherical(matrix);
+        all.push_back(
+            {.channel = matrix.spectrum + (matrix.face == KlemsFace::Front ? " front" : " back"),
+             .transmission = matrix.transmission,
+             .stated = {},
+             .recomputed = shares.front()});
+    }
+    return all;
+}
+
 std::vector<TotalFacts> totals(const BrdfRows& /*rows*/, const std::vector<Channel>& /*channels*/) {
     return {};
 }
