@@ -8,7 +8,7 @@
 #include "proc/estimate/rotations_estimator.h"
 #include "proc/estimate/scattered_estimator.h"
 #include "proc/estimate/seed004.h"
-#include "proc/formats/points_csv.h"
+#include "proc/formats/sniff.h"
 #include "proc/table/merged_info.h"
 #include "proc/table/rotations.h"
 
@@ -34,9 +34,19 @@ Result<Prior> priorOf(const EstimatorChoice& choice) {
     });
 }
 
+/// Whether there is anything between its incidences to be estimated: it holds a few of them.
+bool isSparse(const Material& material) {
+    if (material.sample != nullptr || material.table != nullptr) return true;
+    constexpr std::size_t kFew = 12;
+    const auto* table = material.file ? material.file->as<proc::SphericalTable>() : nullptr;
+    return table != nullptr && table->isotropic() &&
+           proc::incidencesOf(*material.file).size() <= kFew;
+}
+
 /// Of a sample or a table.
 std::vector<Radians> rotationsOf(const Material& material) {
     if (material.sample != nullptr) return proc::rotationsOf(*material.sample);
+    if (material.table == nullptr) return {Radians()};
     std::vector<Radians> rotations;
     rotations.reserve(material.table->rotationDeg.size());
     for (const double deg : material.table->rotationDeg) {
@@ -70,6 +80,10 @@ Result<Estimated> ofMaterial(Material material, const EstimatorChoice& choice) {
                              " takes one as isotropic; use auto, or first: gonio merge "
                              "--isotropic"};
         }
+        if (material.sample == nullptr && material.table == nullptr) {
+            return Error{ErrorKind::Usage,
+                         "--estimator " + choice.name + " is for .gonio and Zemax files; use auto"};
+        }
         auto made = material.sample != nullptr ? proc::makeSeed004(*material.sample, *seed)
                                                : proc::makeSeed004(*material.table, *seed);
         if (!made) return made.error();
@@ -90,19 +104,28 @@ Result<Estimated> ofMaterial(Material material, const EstimatorChoice& choice) {
     return Estimated{Opened(std::move(*made)), std::move(material), chosen};
 }
 
-Result<Estimated> ofScattered(const std::string& file, const EstimatorChoice& choice) {
+Result<Estimated> ofScattered(const proc::BrdfRows& rows, const EstimatorChoice& choice) {
     if (choice.name != "auto") {
         return Error{ErrorKind::Usage,
-                     "'" + file + "' holds scattered values: --estimator auto is for them, not '" +
-                         choice.name + "'"};
+                     "scattered values: --estimator auto is for them, not '" + choice.name + "'"};
     }
-    const Result<proc::Points> points = proc::readPoints(file);
-    if (!points) return points.error();
-    const auto data = proc::fitDataOf(*points);
-    if (!data) return data.error().in("'" + file + "'");
+    const auto data = proc::fitDataOf(rows);
+    if (!data) return data.error();
     auto made = proc::ScatteredEstimator::over(*data);
-    if (!made) return made.error().in("'" + file + "'");
+    if (!made) return made.error();
     return Estimated{Opened(std::move(*made)), Material{}, nullptr, data->incidences};
+}
+
+/// What is finer than any estimator answers as itself.
+Result<Estimated> asItself(Material material, const EstimatorChoice& choice) {
+    if (choice.name != "auto" && choice.name != "none") {
+        const bool formula = material.file == nullptr;
+        return Error{ErrorKind::Usage,
+                     std::string(formula ? "a formula" : "it holds all directions") +
+                         ": it needs no --estimator"};
+    }
+    Opened scatterer = material.scatterer;
+    return Estimated{std::move(scatterer), std::move(material)};
 }
 
 Result<void> checkName(const std::string& name) {
@@ -125,11 +148,24 @@ std::vector<Radians> Estimated::rotations() const {
     return known.empty() ? std::vector<Radians>{Radians()} : known;
 }
 
-bool holdsScattered(const std::string& f) { return std::filesystem::path(f).extension() == ".csv"; }
+bool holdsScattered(const std::string& f) {
+    if (f.starts_with("model:") || isStored(f)) return false;
+    const auto format = proc::sniffFile(f);
+    return format && proc::listsDirections(*format);
+}
 
 Result<Estimated> estimated(Material material, const EstimatorChoice& choice) {
     if (auto known = checkName(choice.name); !known) return known.error();
+    if (!isSparse(material)) return asItself(std::move(material), choice);
     return ofMaterial(std::move(material), choice);
+}
+
+Result<Estimated> estimated(proc::BrdfFile file, const EstimatorChoice& choice) {
+    if (auto known = checkName(choice.name); !known) return known.error();
+    if (const auto* rows = file.as<proc::BrdfRows>()) return ofScattered(*rows, choice);
+    Result<Material> material = materialOf(std::move(file));
+    if (!material) return material.error();
+    return estimated(std::move(*material), choice);
 }
 
 Result<Estimated> openEstimated(const std::string& f,
@@ -137,34 +173,20 @@ Result<Estimated> openEstimated(const std::string& f,
                                 const EstimatorChoice& choice,
                                 proc::EvalPath path) {
     if (auto known = checkName(choice.name); !known) return known.error();
-    if (holdsScattered(f)) return ofScattered(f, choice);
-    Result<Material> material = openMaterial(f, store, path);
-    if (!material) return material.error();
-    if (material->sample != nullptr || material->table != nullptr) {
-        auto made = ofMaterial(std::move(*material), choice);
+    if (f.starts_with("model:")) {
+        Result<Material> model = openMaterial(f, store, path);
+        if (!model) return model.error();
+        auto made = asItself(std::move(*model), choice);
         if (!made) return made.error().in("'" + f + "'");
         return made;
     }
-    if (choice.name != "auto" && choice.name != "none") {
-        return Error{ErrorKind::Usage, "'" + f + "' is a formula: it needs no --estimator"};
-    }
-    Opened scatterer = material->scatterer;
-    return Estimated{std::move(scatterer), std::move(*material)};
-}
-
-Result<Estimated> openSurface(const std::string& f,
-                              const std::filesystem::path& store,
-                              const std::string& estimator) {
-    if (estimator != "none" && holdsScattered(f)) {
-        return Error{
-            ErrorKind::Usage,
-            "'" + f + "' holds scattered values: --estimator is for .gonio, .bsdf and sample:NAME"};
-    }
-    if (!holdsScattered(f)) return openEstimated(f, store, {.name = estimator});
-    Result<Material> material = openMaterial(f, store);
-    if (!material) return material.error();
-    Opened scatterer = material->scatterer;
-    return Estimated{std::move(scatterer), std::move(*material)};
+    const Result<std::filesystem::path> place = fileOf(f, store);
+    if (!place) return place.error();
+    Result<proc::BrdfFile> file = proc::readBrdf(*place);
+    if (!file) return file.error();
+    auto made = estimated(std::move(*file), choice);
+    if (!made) return made.error().in("'" + f + "'");
+    return made;
 }
 
 }  // namespace gonio::daemon

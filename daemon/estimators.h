@@ -41,23 +41,20 @@ struct Estimated {
     [[nodiscard]] std::vector<Radians> rotations() const;
 };
 
-/// Whether F is a .csv of scattered values: `auto` is then the only one.
+/// Whether F is a file that lists directions, as a .csv does: `auto` is then the only estimator.
 [[nodiscard]] bool holdsScattered(const std::string& f);
 
-/// A measured sample or table, ready to answer; errors as openEstimated, without its name.
+/// A measured sample, a table or a formula, ready to answer; errors as openEstimated, without its
+/// name. What holds all directions, as MERL tables and formulas do, is its own estimator: any but
+/// auto and none is a Usage error.
 [[nodiscard]] Result<Estimated> estimated(Material material, const EstimatorChoice& choice);
+/// Likewise a file that was read; of scattered values the estimator is auto.
+[[nodiscard]] Result<Estimated> estimated(proc::BrdfFile file, const EstimatorChoice& choice);
 
-/// F, ready to answer. A model is its own estimator: any but auto and none is a Usage error; so is
-/// a name that is none. A .csv file holds scattered values.
+/// F, ready to answer.
 [[nodiscard]] Result<Estimated> openEstimated(const std::string& f,
                                               const std::filesystem::path& store,
                                               const EstimatorChoice& choice,
                                               proc::EvalPath path = {});
-
-/// Likewise a file of cells or nodes, or a formula, as itself where the name is none. Scattered
-/// values are a Usage error.
-[[nodiscard]] Result<Estimated> openSurface(const std::string& f,
-                                            const std::filesystem::path& store,
-                                            const std::string& estimator);
 
 }  // namespace gonio::daemon

@@ -17,18 +17,11 @@ constexpr std::string_view kSample = "sample:";
 }  // namespace
 
 std::vector<Radians> Material::incidences() const {
-    std::vector<Radians> all;
-    if (sample != nullptr) {
-        for (const proc::LedTable& led : sample->leds) {
-            if (std::find(all.begin(), all.end(), led.incidence) == all.end())
-                all.push_back(led.incidence);
-        }
-    } else if (table != nullptr) {
-        for (double degrees : table->incidenceDeg) all.push_back(Radians::fromDegrees(degrees));
-    } else {
-        all = {0_deg, 20_deg, 40_deg, 60_deg};
-    }
-    return all;
+    std::vector<Radians> known;
+    if (file) known = proc::incidencesOf(*file);
+    if (known.empty() || known.size() > proc::kMostFileIncidences)
+        return {0_deg, 20_deg, 40_deg, 60_deg};
+    return known;
 }
 
 bool isStored(const std::string& f) { return f.starts_with(kSample); }
@@ -45,6 +38,21 @@ Result<std::filesystem::path> fileOf(const std::string& f, const std::filesystem
     return std::move(record->file);
 }
 
+Result<Material> materialOf(proc::BrdfFile file) {
+    Material material{.kind = std::string(proc::name(file.format))};
+    material.file = std::make_shared<const proc::BrdfFile>(std::move(file));
+    Result<std::unique_ptr<const Scatterer>> lookup = proc::lookupOver(*material.file);
+    if (!lookup) return lookup.error();
+    material.scatterer = std::move(*lookup);
+    if (const auto* sample = dynamic_cast<const proc::SampleLookup*>(material.scatterer.get())) {
+        material.sample = &sample->set();
+    }
+    if (const auto* table = dynamic_cast<const proc::SpecularLookup*>(material.scatterer.get())) {
+        material.table = &table->table();
+    }
+    return material;
+}
+
 Result<Material> openMaterial(const std::string& f,
                               const std::filesystem::path& store,
                               proc::EvalPath path) {
@@ -55,17 +63,10 @@ Result<Material> openMaterial(const std::string& f,
     }
     const Result<std::filesystem::path> file = fileOf(f, store);
     if (!file) return file.error();
-    Result<std::unique_ptr<const Scatterer>> brdf = proc::openBrdf(*file);
+    Result<proc::BrdfFile> brdf = proc::readBrdf(*file);
     if (!brdf) return brdf.error();
-    Material material{.kind = "file", .scatterer = std::move(*brdf)};
-    if (const auto* sample = dynamic_cast<const proc::SampleLookup*>(material.scatterer.get())) {
-        material.kind = "gonio";
-        material.sample = &sample->set();
-    }
-    if (const auto* table = dynamic_cast<const proc::SpecularLookup*>(material.scatterer.get())) {
-        material.kind = "zemax";
-        material.table = &table->table();
-    }
+    Result<Material> material = materialOf(std::move(*brdf));
+    if (!material) return material.error().in(file->string());
     return material;
 }
 

@@ -9,6 +9,7 @@
 
 #include "proc/core/result.h"
 #include "proc/core/scatterer.h"
+#include "proc/formats/brdf_file.h"
 #include "proc/models/analytic.h"
 #include "proc/table/sample_set.h"
 #include "proc/table/specular_table.h"
@@ -16,12 +17,14 @@
 namespace gonio::daemon {
 
 struct Material {
-    std::string kind{};                            ///< "model", "gonio", "zemax"
+    std::string kind{};                            ///< "model", or a format's name
     std::shared_ptr<const Scatterer> scatterer{};  ///< shared with the simulated rig's stage
+    std::shared_ptr<const proc::BrdfFile> file{};  ///< null of a model
     const proc::SampleSet* sample = nullptr;       ///< of the scatterer, when it is a .gonio
-    const proc::SpecularTable* table = nullptr;    ///< of the scatterer, when it is a Zemax file
+    const proc::SpecularTable* table = nullptr;    ///< of the scatterer, when it is such a table
 
-    /// The incidences that the material knows, each once: the LEDs' where it is a formula.
+    /// The incidences that the material knows, each once: the LEDs' where it is a formula, or holds
+    /// all of them.
     [[nodiscard]] std::vector<Radians> incidences() const;
 };
 
@@ -32,8 +35,11 @@ struct Material {
 [[nodiscard]] Result<std::filesystem::path> fileOf(const std::string& f,
                                                    const std::filesystem::path& store);
 
-/// Usage error for a bad model, File error for a bad file; `store` is needed for sample:NAME only,
-/// `path` is how a model is evaluated.
+/// A file that was read, ready to answer; errors as lookupOver().
+[[nodiscard]] Result<Material> materialOf(proc::BrdfFile file);
+
+/// Usage error for a bad model and for scattered values, File error for a bad file; `store` is
+/// needed for sample:NAME only, `path` is how a model is evaluated.
 [[nodiscard]] Result<Material> openMaterial(const std::string& f,
                                             const std::filesystem::path& store,
                                             proc::EvalPath path = {});

@@ -8,15 +8,15 @@
 #include "proc/core/log.h"
 #include "proc/core/number_text.h"
 #include "proc/formats/flag_column.h"
+#include "proc/formats/named_band.h"
 #include "proc/formats/points_csv.h"
+#include "proc/table/band_channels.h"
 #include "proc/table/scattered_of.h"
 
 namespace gonio::daemon {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double kSameBandNm = 25;
 
 Error usage(const std::string& file, const std::string& what) {
     return {ErrorKind::Usage, "merge: '" + file + "': " + what};
@@ -35,34 +35,21 @@ std::optional<Band> onlyBand(const proc::SampleSet& set) {
     return only;
 }
 
-/// What a comment of the file says of its wavelength, nm.
-std::optional<double> wavelengthIn(const std::vector<std::string>& comments) {
-    constexpr std::string_view kWord = "Wavelength (nm) =";
-    for (const std::string& comment : comments) {
-        const std::size_t at = comment.find(kWord);
-        if (at == std::string::npos) continue;
-        std::string number = comment.substr(at + kWord.size());
-        std::erase_if(number, [](char c) { return std::isspace(static_cast<unsigned char>(c)); });
-        if (const auto nm = parseDouble(number)) return nm;
-    }
-    return std::nullopt;
-}
-
 Result<Band> bandOf(const std::string& file, const std::vector<std::string>& comments) {
-    const std::optional<Band> named = bandOfName(file);
-    const std::optional<double> nm = wavelengthIn(comments);
+    const std::optional<Band> named = proc::bandOfName(file);
+    const std::optional<double> nm = proc::wavelengthIn(comments);
     if (!nm && named) return *named;
     if (!nm) {
         return usage(file,
                      "of which band is it? put R, G or B into its name, as in NAME_R.bsdf, or the "
                      "comment # Wavelength (nm) = 630 into it");
     }
-    const std::optional<Band> told = bandOfWavelength(*nm);
+    const std::optional<Band> told = proc::bandOfWavelength(*nm);
     if (!told) {
         return usage(file,
                      "its wavelength is " + shortest(*nm) +
                          " nm; wanted one of the LEDs', 630, 525 or 465 nm, to " +
-                         shortest(kSameBandNm) + " nm");
+                         shortest(proc::kBandReachNm) + " nm");
     }
     if (named && *named != *told) {
         return usage(file,
@@ -171,29 +158,6 @@ bool sameSample(const proc::SampleSet& a, const proc::SampleSet& b) {
 }
 
 }  // namespace
-
-std::optional<Band> bandOfName(const fs::path& file) {
-    std::optional<Band> band;
-    std::string word;
-    for (const char c : file.stem().string() + " ") {
-        if (std::isalpha(static_cast<unsigned char>(c))) {
-            word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-            continue;
-        }
-        if (word == "r" || word == "red") band = Band::R;
-        if (word == "g" || word == "green") band = Band::G;
-        if (word == "b" || word == "blue") band = Band::B;
-        word.clear();
-    }
-    return band;
-}
-
-std::optional<Band> bandOfWavelength(double nm) {
-    for (const Band band : kBands) {
-        if (std::abs(nm - nanometres(band)) <= kSameBandNm) return band;
-    }
-    return std::nullopt;
-}
 
 Result<std::vector<MergeInput>> readMergeInputs(const std::vector<std::string>& files,
                                                 const fs::path& store) {

@@ -29,9 +29,4 @@ struct MergeInput {
 [[nodiscard]] Result<std::vector<MergeInput>> readMergeInputs(const std::vector<std::string>& files,
                                                               const std::filesystem::path& store);
 
-/// By the last of its words that names one: "paint_R", "Red-paint".
-[[nodiscard]] std::optional<Band> bandOfName(const std::filesystem::path& file);
-/// The band within 25 nm; empty where there is none.
-[[nodiscard]] std::optional<Band> bandOfWavelength(double nanometres);
-
 }  // namespace gonio::daemon

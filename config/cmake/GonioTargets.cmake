@@ -13,7 +13,7 @@ target_compile_options(gonio_options INTERFACE
     -Wno-missing-field-initializers  # a designated initialiser leaves the rest at its default
     -ffp-contract=off  # the same numbers on every machine
     # GCC 12 takes std::string's moves for overruns, and a precompiled header no longer for a system's.
-    $<$<BOOL:${GONIO_PRECOMPILE}>:-Wno-array-bounds;-Wno-restrict;-Wno-stringop-overflow;-Wno-stringop-overread>
+    $<$<AND:$<BOOL:${GONIO_PRECOMPILE}>,$<CXX_COMPILER_ID:GNU>>:-Wno-array-bounds;-Wno-restrict;-Wno-stringop-overflow;-Wno-stringop-overread>
     $<$<BOOL:${GONIO_WERROR}>:-Werror>)
 if(GONIO_SANITIZE)
     target_compile_options(gonio_options INTERFACE

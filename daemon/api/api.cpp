@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "daemon/api/documents.h"
-#include "daemon/exports.h"
+#include "daemon/conversion_input.h"
 #include "daemon/problem.h"
 #include "proc/core/number_text.h"
 #include "proc/formats/file_bytes.h"
@@ -189,32 +189,38 @@ Result<ApiReply> getSampleRaw(const Call& call) {
 }
 
 /// The band that ?band= names, which a format with one file for each needs, and no other takes.
-Result<std::optional<Band>> wantedBand(const Call& call, ExportFormat format) {
+Result<std::vector<Band>> wantedBands(const Call& call, proc::Format format) {
     const auto asked = call.request.query.find("band");
-    const bool one = format == ExportFormat::Zemax;
-    if (asked == call.request.query.end() && !one) return std::optional<Band>();
+    const bool one = format == proc::Format::Zemax;
+    if (asked == call.request.query.end() && !one) return std::vector<Band>();
     if (!one) {
         return Error{ErrorKind::Usage,
                      std::string(name(format)) + " holds all bands: ?band= is not for it"};
     }
     for (Band band : kBands) {
         if (asked != call.request.query.end() && letter(band) == asked->second) {
-            return std::optional(band);
+            return std::vector{band};
         }
     }
     return Error{ErrorKind::Usage, "zemax holds one band: wanted ?band=r, g or b"};
 }
 
 Result<ApiReply> getSampleExport(const Call& call) {
-    const auto format = parseExportFormat(call.names.back());
+    const auto format = proc::parseFormat(call.names.back());
     if (!format) return format.error();
-    const auto band = wantedBand(call, *format);
-    if (!band) return band.error();
+    auto bands = wantedBands(call, *format);
+    if (!bands) return bands.error();
     return withSample(call, [&](const SampleRecord& it) -> Result<ApiReply> {
-        const auto surface = openMaterial(it.file.string(), call.engine.storeRoot());
-        if (!surface) return surface.error();
-        auto files = exportAs(*surface, *format, *band);
+        const auto opened = openConversion({.f = it.file.string(), .bands = {.bands = *bands}}, {});
+        if (!opened) return opened.error();
+        auto files = proc::convertTo(opened->source, {.to = *format});
         if (!files) return files.error();
+        if (files->size() != 1) {
+            return Error{ErrorKind::Usage,
+                         std::string(name(*format)) +
+                             " takes several files of this sample: gonio "
+                             "convert sample:NAME writes them"};
+        }
         return ApiReply{.type = kBytes, .body = std::move(files->front().bytes)};
     });
 }

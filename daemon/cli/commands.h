@@ -104,6 +104,7 @@ Result<void> doctor(const CommonOptions& common);
 
 struct InfoOptions {
     std::string file;
+    std::string from;                ///< a format's name; empty: by the content
     std::string estimator = "none";  ///< else what it makes of the file, too
 };
 Result<void> info(const CommonOptions& common, const InfoOptions& options);
@@ -150,10 +151,25 @@ Result<void> buildPrior(const CommonOptions& common, const PriorOptions& options
 struct ConvertOptions {
     std::string input;
     std::filesystem::path output;
-    std::string to;                  ///< zemax, csv, gonio; empty: by the output's extension
-    std::string estimator = "none";  ///< else it answers a table's nodes
+    std::string from;    ///< a format's name; empty: by the content
+    std::string to;      ///< a format's name; empty: by the output's extension
+    std::string bands;   ///< of r, g, b with commas, or srgb; empty: all
+    std::string grid;    ///< incidences and step of a table; empty: the usual ones
+    std::string cosine;  ///< yes, no: whether the values hold it; empty: as the file says
+    std::string estimator = "none";  ///< else it answers a table's directions
+    bool half = false;               ///< 16-bit floats where the format has them
 };
 Result<void> convert(const CommonOptions& common, const ConvertOptions& options);
+
+struct AtlasOptions {
+    std::vector<std::string> files;
+    std::filesystem::path output;
+    std::string grid;                ///< as of convert
+    std::string estimator = "none";  ///< as of convert
+    bool half = false;               ///< 16-bit floats
+};
+/// Several samples as one picture, tile by tile, for shaders.
+Result<void> atlas(const CommonOptions& common, const AtlasOptions& options);
 
 struct MergeCommandOptions {
     std::vector<std::string> files;
@@ -169,7 +185,7 @@ Result<void> merge(const CommonOptions& common, const MergeCommandOptions& optio
 struct ExportOptions {
     std::string file;
     std::filesystem::path output;
-    std::string formats;  ///< of gonio, zemax, csv, with commas; empty: all that it can become
+    std::string formats;  ///< with commas; empty: of gonio, zemax and csv what it can become
     std::string estimator = "none";  ///< else it answers a table's nodes
 };
 Result<void> exportTo(const CommonOptions& common, const ExportOptions& options);

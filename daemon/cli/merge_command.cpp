@@ -7,11 +7,11 @@
 #include "daemon/channel_merging.h"
 #include "daemon/cli/commands.h"
 #include "daemon/cli/output.h"
-#include "daemon/exports.h"
 #include "proc/core/log.h"
 #include "proc/core/number_text.h"
 #include "proc/formats/file_bytes.h"
 #include "proc/formats/file_degrees.h"
+#include "proc/formats/format.h"
 #include "proc/formats/gonio_exr.h"
 #include "proc/formats/points_csv.h"
 #include "proc/optics/cell_grid.h"
@@ -154,9 +154,9 @@ void printReport(const Merged& merged, const MergeCommandOptions& options) {
         std::cout << "and " << merged.outliers.size() - kPrinted << " more outliers\n";
 }
 
-Result<std::string> bytesOf(const Merged& merged, ExportFormat format) {
+Result<std::string> bytesOf(const Merged& merged, proc::Format format) {
     const bool scattered = merged.sample.leds.empty();
-    if (format == ExportFormat::Csv) {
+    if (format == proc::Format::Csv) {
         return scattered ? channelCsv(merged.rows) : proc::sampleCsv(merged.sample);
     }
     if (scattered) {
@@ -170,8 +170,8 @@ Result<std::string> bytesOf(const Merged& merged, ExportFormat format) {
 }  // namespace
 
 Result<void> merge(const CommonOptions& common, const MergeCommandOptions& options) {
-    const auto format = formatOfExtension(options.output.extension().string());
-    if (!format || *format == ExportFormat::Zemax) {
+    const auto format = proc::formatToWrite(options.output);
+    if (!format || (*format != proc::Format::Gonio && *format != proc::Format::Csv)) {
         return Error{ErrorKind::Usage,
                      "merge: '" + options.output.string() + "': wanted OUT.gonio or OUT.csv"};
     }

@@ -36,6 +36,7 @@ struct Program {
     CompareOptions compare;
     PriorOptions prior;
     ConvertOptions convert;
+    AtlasOptions atlas;
     MergeCommandOptions merge;
     ExportOptions exported;
     PlotOptions plot;

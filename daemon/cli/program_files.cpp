@@ -11,6 +11,7 @@ void Program::addFiles() {
     CLI::App* sub = command(
         *app, "info", "print what a file holds", [this] { return daemon::info(common, info); });
     sub->add_option("file", info.file, "a file, sample:NAME or model:SPEC")->required();
+    sub->add_option("--from", info.from, "the format, where the content does not tell");
     sub->add_option("--estimator",
                     info.estimator,
                     "what answers between and beyond its angles, too: auto, or a method by name");
@@ -75,12 +76,35 @@ void Program::addFiles() {
         return daemon::convert(common, convert);
     });
     sub->add_option("input", convert.input, "a file, sample:NAME or model:SPEC")->required();
-    sub->add_option("output", convert.output, "the file to write (.bsdf, .csv, .gonio)")
-        ->required();
-    sub->add_option("--to", convert.to, "zemax, csv or gonio, where the extension does not tell");
+    sub->add_option("output", convert.output, "the file to write")->required();
+    sub->add_option("--from", convert.from, "the input's format, where its content does not tell");
+    sub->add_option("--to", convert.to, "the output's format, where its extension does not tell");
+    sub->add_option("--bands",
+                    convert.bands,
+                    "of r,g,b those to keep, or the one that a file of one value is; srgb makes "
+                    "linear sRGB of X, Y, Z");
+    sub->add_option("--grid",
+                    convert.grid,
+                    "incidences and step of a table in degrees: 0,20,40 or 0:10:80/2 or /0.5");
+    sub->add_option("--cosine",
+                    convert.cosine,
+                    "yes or no: whether the input's values hold the cosine of the view");
+    sub->add_option(
+        "--estimator",
+        convert.estimator,
+        "what answers a table's directions: none (what was measured), auto, or by name");
+    sub->add_flag("--half", convert.half, "16-bit floats, where the format has them");
+
+    sub = command(*app, "atlas", "several samples as one EXR picture for shaders", [this] {
+        return daemon::atlas(common, atlas);
+    });
+    sub->add_option("files", atlas.files, "files, sample:NAME or model:SPEC")->required();
+    sub->add_option("-o,--output", atlas.output, "the .exr file to write")->required();
+    sub->add_option("--grid", atlas.grid, "incidences and pixels in degrees, as of convert");
     sub->add_option("--estimator",
-                    convert.estimator,
-                    "what answers a table's nodes: none (what was measured), auto, or by name");
+                    atlas.estimator,
+                    "what answers between the measured directions: none, auto, or by name");
+    sub->add_flag("--half", atlas.half, "16-bit floats");
 
     sub =
         command(*app, "merge", "make one file of rotations, repeats or bands of a sample", [this] {
@@ -101,7 +125,7 @@ void Program::addFiles() {
     });
     sub->add_option("file", exported.file, "a file, sample:NAME or model:SPEC")->required();
     sub->add_option("-o,--output", exported.output, "folder")->required();
-    sub->add_option("--formats", exported.formats, "of gonio, zemax, csv, with commas");
+    sub->add_option("--formats", exported.formats, "names of formats with commas, as of --to");
     sub->add_option("--estimator",
                     exported.estimator,
                     "what answers a table's nodes: none (what was measured), auto, or by name");

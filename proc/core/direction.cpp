@@ -43,4 +43,8 @@ Direction mirrorOf(const Direction& wi) {
     return *Direction::fromVector({-wi.x(), -wi.y(), wi.z()});
 }
 
+Direction acrossSurface(const Direction& w) {
+    return *Direction::fromVector({w.x(), w.y(), -w.z()});
+}
+
 }  // namespace gonio

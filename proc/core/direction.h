@@ -62,5 +62,7 @@ struct DirectionSpread {
 
 /// The mirror direction of wi: (-x, -y, z).
 [[nodiscard]] Direction mirrorOf(const Direction& wi);
+/// On the other side of the surface: (x, y, -z).
+[[nodiscard]] Direction acrossSurface(const Direction& w);
 
 }  // namespace gonio

@@ -36,12 +36,25 @@ std::optional<double> parseDouble(std::string_view text) {
     return value;
 }
 
+std::optional<LeadingDouble> leadingDouble(std::string_view text) {
+    const std::string_view digits = withoutPlus(text);
+    double value = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (error != std::errc{} || !std::isfinite(value)) return std::nullopt;
+    return LeadingDouble{value, static_cast<std::size_t>(end - text.data())};
+}
+
 std::optional<std::int64_t> parseInteger(std::string_view text) {
     return parseWhole<std::int64_t>(text);
 }
 
 std::string shortest(double value) { return toText(value); }
 std::string shortest(float value) { return toText(value); }
+void appendShortest(std::string& text, double value) {
+    std::array<char, 32> buffer;  // "-2.2250738585072014e-308"
+    const auto written = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+    text.append(buffer.data(), written.ptr);
+}
 std::string fixed(double value, int decimals) {
     return toText(value, std::chars_format::fixed, decimals);
 }

@@ -27,6 +27,7 @@
 #include "proc/core/scatterer.h"
 #include "proc/formats/points_csv.h"
 #include "proc/models/kernel.h"
+#include "proc/table/brdf_rows.h"
 #include "proc/table/budget_shares.h"
 #include "proc/table/sample_set.h"
 #include "proc/table/specular_table.h"
@@ -94,6 +95,8 @@ struct DataOptions {
 /// The first plane of the first rotation; a Usage error for a table in XYZ or of transmission.
 [[nodiscard]] Result<BrdfData> fitDataOf(const SpecularTable& table,
                                          const DataOptions& options = {});
+/// The bands of its channels (band_channels.h); a Usage error where it has none.
+[[nodiscard]] Result<BrdfData> fitDataOf(const BrdfRows& rows, const DataOptions& options = {});
 /// Columns f or f_r,f_g,f_b, and where there u_random* or else u*, u_systematic*, flags or flags_r,
 /// flags_g, flags_b.
 [[nodiscard]] Result<BrdfData> fitDataOf(const Points& points, const DataOptions& options = {});

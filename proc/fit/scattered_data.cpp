@@ -8,6 +8,7 @@
 #include "proc/core/number_text.h"
 #include "proc/fit/data_maker.h"
 #include "proc/formats/flag_column.h"
+#include "proc/table/band_channels.h"
 
 namespace gonio::proc {
 namespace {
@@ -124,6 +125,34 @@ Result<ScatteredColumns> columnsOf(const Points& points) {
 }
 
 }  // namespace
+
+Result<BrdfData> fitDataOf(const BrdfRows& rows, const DataOptions& options) {
+    const Result<BandChannels> bands = bandChannels(rows.channels);
+    if (!bands) return bands.error();
+    DataMaker maker(options);
+    maker.data().bands = bands->count;
+    maker.data().uKnown = !rows.uRandom.empty();
+    for (std::size_t i = 0; i < rows.pairs.size(); ++i) {
+        const LightView& pair = rows.pairs[i];
+        if (!pair.in.aboveHorizon() || !pair.out.aboveHorizon()) {
+            maker.leaveOut();
+            continue;
+        }
+        FitRow& row = maker.add(pair);
+        for (std::size_t b = 0; b < maker.data().bandsUsed(); ++b) {
+            const ChannelBlend& blend = bands->bands[b];
+            const auto of = [&](const std::vector<double>& values) {
+                return blend.of([&](std::size_t c) { return values[rows.index(i, c)]; });
+            };
+            if (isLost(rows.flagsAt(i, blend.low) | rows.flagsAt(i, blend.high))) continue;
+            row.f[b] = of(rows.f);
+            if (!rows.uRandom.empty()) row.uRandom[b] = of(rows.uRandom);
+            if (!rows.uSystematic.empty()) row.uSystematic[b] = of(rows.uSystematic);
+        }
+    }
+    groupByIncidence(maker.data());
+    return std::move(maker).finished();
+}
 
 Result<BrdfData> fitDataOf(const Points& points, const DataOptions& options) {
     const Result<ScatteredColumns> columns = columnsOf(points);

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "proc/formats/shown.h"
+
 namespace gonio::proc {
 namespace {
 
@@ -42,6 +44,7 @@ public:
         left_.remove_prefix(size);
         return text;
     }
+    [[nodiscard]] bool empty() const { return left_.empty(); }
     [[nodiscard]] bool atZero() const { return !left_.empty() && left_[0] == '\0'; }
 
 private:
@@ -60,6 +63,65 @@ bool windowFits(std::string_view box, Size largest) {
     const std::int64_t width = corner[2] - corner[0] + 1;
     const std::int64_t height = corner[3] - corner[1] + 1;
     return width >= 1 && height >= 1 && width <= largest.width && height <= largest.height;
+}
+
+/// Bytes of a value of these types, whatever the header says: the library reads as many.
+struct FixedSize {
+    std::string_view type;
+    std::size_t bytes;
+};
+constexpr std::array kFixedSizes{
+    FixedSize{"box2f", 16},         FixedSize{"box2i", 16},   FixedSize{"chromaticities", 32},
+    FixedSize{"compression", 1},    FixedSize{"double", 8},   FixedSize{"envmap", 1},
+    FixedSize{"float", 4},          FixedSize{"int", 4},      FixedSize{"keycode", 28},
+    FixedSize{"lineOrder", 1},      FixedSize{"m33d", 72},    FixedSize{"m33f", 36},
+    FixedSize{"m44d", 128},         FixedSize{"m44f", 64},    FixedSize{"rational", 8},
+    FixedSize{"deepImageState", 1}, FixedSize{"tiledesc", 9}, FixedSize{"timecode", 8},
+    FixedSize{"v2d", 16},           FixedSize{"v2f", 8},      FixedSize{"v2i", 8},
+    FixedSize{"v3d", 24},           FixedSize{"v3f", 12},     FixedSize{"v3i", 12},
+};
+
+/// Names with 16 bytes each, and an empty one exactly at the end.
+bool isChannelList(std::string_view value) {
+    constexpr std::size_t kChannel = 16;
+    Bytes bytes(value);
+    while (!bytes.atZero()) {
+        if (!bytes.name() || !bytes.block(kChannel)) return false;
+    }
+    return bytes.block(1) && bytes.empty();
+}
+
+bool isStringVector(std::string_view value) {
+    Bytes bytes(value);
+    while (!bytes.empty()) {
+        const auto size = bytes.word();
+        if (!size || !bytes.block(*size)) return false;
+    }
+    return true;
+}
+
+/// Width, height and four bytes of each pixel.
+bool isPreview(std::string_view value) {
+    Bytes bytes(value);
+    const auto width = bytes.word();
+    const auto height = bytes.word();
+    if (!width || !height) return false;
+    const std::uint64_t pixels = std::uint64_t{*width} * *height;
+    return pixels <= value.size() && bytes.block(static_cast<std::size_t>(4 * pixels)) &&
+           bytes.empty();
+}
+
+/// The library reads exactly these bytes for a value of this type: else it would take what follows
+/// for something else than we do.
+bool valueFits(std::string_view type, std::string_view value) {
+    for (const FixedSize& fixed : kFixedSizes) {
+        if (type == fixed.type) return value.size() == fixed.bytes;
+    }
+    if (type == "chlist") return isChannelList(value);
+    if (type == "floatvector") return value.size() % sizeof(float) == 0;
+    if (type == "stringvector") return isStringVector(value);
+    if (type == "preview") return isPreview(value);
+    return true;  // text, and what the library does not know: as long as the header says
 }
 
 /// What is wrong with one attribute of a header; empty when nothing is.
@@ -82,6 +144,10 @@ Result<void> walkHeader(Bytes& bytes, Size largest) {
         const auto size = type ? bytes.word() : std::nullopt;
         const auto value = size ? bytes.block(*size) : std::nullopt;
         if (!value) return malformed("truncated in a header");
+        if (!valueFits(*type, *value)) {
+            return malformed("attribute " + shown(*name) + " is not " + shown(*type) +
+                             ", which it " + "says that it is");
+        }
         if (const std::string wrong = complaint(*name, *value, largest); !wrong.empty()) {
             return malformed(wrong);
         }

@@ -1,6 +1,8 @@
 #include "proc/formats/exr_parts.h"
 
+#include <Imath/half.h>
 #include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFloatVectorAttribute.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
@@ -18,6 +20,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "proc/core/parallel.h"
 #include "proc/formats/exr_header_walk.h"
 #include "proc/formats/shown.h"
 
@@ -63,14 +66,21 @@ private:
     std::size_t at_ = 0;
 };
 
-/// The library's pool, started once. Decoding stays on one thread: small files, hostile ones too.
-int encodingThreads() {
+/// The library's pool, started once.
+int poolThreads() {
     static const int threads = [] {
         const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
         Imf::setGlobalThreadCount(cores);
         return cores;
     }();
     return threads;
+}
+
+/// 0, on the caller's own thread, for what takes a few milliseconds either way: most files, and
+/// those of tests that read many.
+int decodingThreads(std::size_t fileBytes) {
+    constexpr std::size_t kWorthThreads = std::size_t{1} << 20U;
+    return fileBytes < kWorthThreads ? 0 : poolThreads();
 }
 
 /// All parts of a file must share one display window: it holds the largest of them.
@@ -91,8 +101,12 @@ Imf::Header headerOf(const ExrPart& part, const Imath::Box2i& display) {
     header.compression() = Imf::ZIP_COMPRESSION;
     header.zipCompressionLevel() = 1;  // noise hardly gets smaller with more work
     for (const auto& [key, value] : part.text) header.insert(key, Imf::StringAttribute(value));
+    for (const auto& [key, value] : part.numbers) {
+        header.insert(key, Imf::FloatVectorAttribute(value));
+    }
     for (const auto& channel : part.floats) {
-        header.channels().insert(channel.first, Imf::Channel(Imf::FLOAT));
+        const Imf::PixelType type = part.half ? Imf::HALF : Imf::FLOAT;
+        header.channels().insert(channel.first, Imf::Channel(type));
     }
     for (const auto& channel : part.counts) {
         header.channels().insert(channel.first, Imf::Channel(Imf::UINT));
@@ -118,17 +132,79 @@ Imf::FrameBuffer bufferOf(const ExrPart& part) {
     return buffer;
 }
 
+/// The floats of a part as halves, and the library's view of them: it converts on reading only.
+struct Halves {
+    std::vector<std::vector<half>> channels;
+    Imf::FrameBuffer buffer;
+
+    explicit Halves(const ExrPart& part) {
+        for (const auto& [name, pixels] : part.floats) {
+            channels.emplace_back(pixels.begin(), pixels.end());
+            buffer.insert(name, sliceOf(Imf::HALF, channels.back().data(), part.size));
+        }
+        for (const auto& [name, pixels] : part.counts) {
+            buffer.insert(name, sliceOf(Imf::UINT, pixels.data(), part.size));
+        }
+    }
+};
+
+void writePart(Imf::OutputPart& out, const ExrPart& part) {
+    if (part.half) {
+        const Halves halves(part);
+        out.setFrameBuffer(halves.buffer);
+        out.writePixels(part.size.height);
+    } else {
+        out.setFrameBuffer(bufferOf(part));
+        out.writePixels(part.size.height);
+    }
+}
+
+std::string encodeAlone(const ExrPart& part, const Imath::Box2i& display, int threads) {
+    const Imf::Header header = headerOf(part, display);
+    MemoryOut out;
+    {
+        Imf::MultiPartOutputFile file(out, &header, 1, false, threads);
+        Imf::OutputPart only(file, 0);
+        writePart(only, part);
+    }
+    return out.take();
+}
+
+/// Each part packed as a file of its own, all at once: the library's threads share only the few
+/// chunks of one part. The first failure is thrown.
+std::vector<std::string> encodeEach(std::span<const ExrPart> parts, const Imath::Box2i& display) {
+    std::vector<std::string> files(parts.size());
+    std::vector<std::exception_ptr> thrown(parts.size());
+    parallelFor(parts.size(), [&](IndexRange range) {
+        for (std::size_t i = range.begin; i < range.end; ++i) {
+            try {
+                files[i] = encodeAlone(parts[i], display, 0);
+            } catch (...) {
+                thrown[i] = std::current_exception();
+            }
+        }
+    });
+    for (const std::exception_ptr& each : thrown) {
+        if (each) std::rethrow_exception(each);
+    }
+    return files;
+}
+
 std::string encode(std::span<const ExrPart> parts) {
+    const Imath::Box2i display = displayWindow(parts);
+    if (parts.size() == 1) return encodeAlone(parts.front(), display, poolThreads());
+    const std::vector<std::string> files = encodeEach(parts, display);
     std::vector<Imf::Header> headers;
-    for (const ExrPart& part : parts) headers.push_back(headerOf(part, displayWindow(parts)));
+    for (const ExrPart& part : parts) headers.push_back(headerOf(part, display));
     MemoryOut out;
     {
         Imf::MultiPartOutputFile file(
-            out, headers.data(), static_cast<int>(headers.size()), false, encodingThreads());
+            out, headers.data(), static_cast<int>(headers.size()), false, 0);
         for (std::size_t i = 0; i < parts.size(); ++i) {
-            Imf::OutputPart part(file, static_cast<int>(i));
-            part.setFrameBuffer(bufferOf(parts[i]));
-            part.writePixels(parts[i].size.height);
+            MemoryIn in(files[i]);
+            Imf::MultiPartInputFile packed(in, 0, false);
+            Imf::InputPart from(packed, 0);
+            Imf::OutputPart(file, static_cast<int>(i)).copyPixels(from);  // chunks as they are
         }
     }
     return out.take();
@@ -140,12 +216,19 @@ void refuseAbove(std::size_t limit, std::size_t bytes) {
                              std::to_string(limit) + " are read");
 }
 
-/// The pixels of all parts may not be more than deflate can hold in the file (1032 : 1), whatever
-/// the headers promise: known before the library or we make room for any.
+/// The pixels of all parts may not be more than deflate packs of measured values, with a wide
+/// margin: known before the library or we make room for any. Constant pictures pack better (1032 :
+/// 1), and small files may.
+std::size_t mostPixelBytes(std::size_t fileBytes) {
+    constexpr std::size_t kUsualRatio = 40;
+    constexpr std::size_t kSmall = std::size_t{40} << 20U;
+    return std::max(kSmall,
+                    fileBytes > SIZE_MAX / kUsualRatio ? SIZE_MAX : kUsualRatio * fileBytes);
+}
+
 void checkPromise(const Imf::MultiPartInputFile& file,
                   std::size_t fileBytes,
                   const ExrLimits& limits) {
-    constexpr std::size_t kMostRatio = 1032;
     std::size_t promised = 0;
     for (int i = 0; i < file.parts(); ++i) {
         const Imf::Header& header = file.header(i);
@@ -162,7 +245,7 @@ void checkPromise(const Imf::MultiPartInputFile& file,
         promised += ofPart;
     }
     refuseAbove(limits.bytes, promised);
-    if (promised / kMostRatio > fileBytes) {
+    if (promised > mostPixelBytes(fileBytes)) {
         throw std::runtime_error("more pixels than the file can hold");
     }
 }
@@ -175,6 +258,8 @@ ExrPart emptyPart(const Imf::Header& header) {
     for (auto it = header.begin(); it != header.end(); ++it) {
         const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute());
         if (text != nullptr) part.text[it.name()] = text->value();
+        const auto* numbers = dynamic_cast<const Imf::FloatVectorAttribute*>(&it.attribute());
+        if (numbers != nullptr) part.numbers[it.name()] = numbers->value();
     }
     for (const char* ours : {"name", "type"}) part.text.erase(ours);  // of the container, not texts
     for (auto it = header.channels().begin(); it != header.channels().end(); ++it) {
@@ -186,6 +271,7 @@ ExrPart emptyPart(const Imf::Header& header) {
             part.counts[it.name()].resize(part.size.pixels());
         } else {
             part.floats[it.name()].resize(part.size.pixels());
+            part.half = channel.type == Imf::HALF;
         }
     }
     return part;
@@ -193,7 +279,7 @@ ExrPart emptyPart(const Imf::Header& header) {
 
 std::vector<ExrPart> decode(std::string_view bytes, const ExrLimits& limits) {
     MemoryIn in(bytes);
-    Imf::MultiPartInputFile file(in, 0, false);
+    Imf::MultiPartInputFile file(in, decodingThreads(bytes.size()), false);
     checkPromise(file, bytes.size(), limits);
     std::vector<ExrPart> parts;
     for (int i = 0; i < file.parts(); ++i) {

@@ -20,7 +20,11 @@ inline constexpr std::size_t kLargestFile = std::size_t{512} << 20U;
 /// At most the first `count` bytes, from a file of any size.
 [[nodiscard]] Result<std::string> readHead(const std::filesystem::path& path, std::size_t count);
 /// Replaces the file; a pipe or a device is written into. A failed write (full disk) is a File
-/// error, and leaves no half file behind.
+/// error, leaves the old file as it was, and no half file behind: the bytes go into PATH.part,
+/// which takes the name only when it is whole. It is not synced to the disk: files that are written
+/// here can be made again, and a sync costs tens of milliseconds each. After a power cut the name
+/// may stand for the old file, the new one or, on some file systems, an empty one; what must
+/// survive that is in the daemon's store, which does sync.
 [[nodiscard]] Result<void> writeFile(const std::filesystem::path& path, std::string_view bytes);
 
 }  // namespace gonio::proc

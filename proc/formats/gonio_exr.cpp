@@ -138,7 +138,8 @@ class Decoder {
 public:
     explicit Decoder(std::string_view name) : name_(name) {}
 
-    Result<SampleSet> read(const std::vector<ExrPart>& parts) {
+    /// Takes the parts: each is let go once it is read.
+    Result<SampleSet> read(std::vector<ExrPart> parts) {
         const bool good = schema(parts.front()) && info(parts.front()) && leds(parts);
         if (!good) return *error_;
         return std::move(set_);
@@ -198,9 +199,9 @@ private:
         return true;
     }
 
-    bool leds(const std::vector<ExrPart>& parts) {
-        std::map<std::string, const ExrPart*> byName;
-        for (const ExrPart& part : parts) byName[part.name] = &part;
+    bool leds(std::vector<ExrPart>& parts) {
+        std::map<std::string, ExrPart*> byName;
+        for (ExrPart& part : parts) byName[part.name] = &part;
         std::size_t used = 0;
         for (std::size_t led = 0; used < byName.size(); ++led) {
             LedTable table;
@@ -210,6 +211,7 @@ private:
                 if (found == byName.end()) continue;
                 ++used;
                 if (!ledBand(*found->second, band, table)) return false;
+                *found->second = {};
             }
             if (used == before)
                 return fail("parts are missing: there is no led" + std::to_string(led) +
@@ -323,10 +325,10 @@ Result<std::string> encodeGonio(const SampleSet& set) {
 }
 
 Result<SampleSet> decodeGonio(std::string_view bytes, std::string_view name) {
-    const auto parts = decodeExr(
+    auto parts = decodeExr(
         bytes, {.largest = kPicture, .parts = 3 * kMostTables, .bytesOfAPart = kMostBytes});
     if (!parts) return parts.error().in("gonio: " + std::string(name));
-    return Decoder(name).read(*parts);
+    return Decoder(name).read(std::move(*parts));
 }
 
 Result<void> writeGonio(const std::filesystem::path& path, const SampleSet& set) {

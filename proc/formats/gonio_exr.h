@@ -21,9 +21,6 @@ namespace gonio::proc {
 
 inline constexpr std::string_view kSampleSchema = "gonio/sample/1";
 
-/// Of each rotation at most 8 LEDs, and 36 rotations of a rig's four.
-inline constexpr std::size_t kMostTables = 144;
-
 /// Internal error for a set without any measured band, with more tables than that, whose cells are
 /// not CellGrid's or not all within a float's range. A number of the info that is not finite is
 /// left out.

@@ -51,6 +51,10 @@ public:
     Result<FileRead<SphericalTable>> read(VendorExtrapolation beyond) {
         if (!header() || !blocks()) return *error_;
         if (!words_.done() && !failSeen("nothing after DataEnd")) return *error_;
+        if (words_.tooManyComments() &&
+            !fail("more than " + std::to_string(Words::kMostComments) + " comments")) {
+            return *error_;
+        }
         FileRead<SphericalTable> out{.content = {},
                                      .about = metadataOfLines(words_.takeComments())};
         if (miniDiff() && beyond == VendorExtrapolation::Masked) mask(out.warnings);
@@ -253,13 +257,12 @@ private:
         }
         f.reserve(promised);
         while (f.size() < promised) {
-            const auto value = parseDouble(words_.peek());
+            const auto value = words_.takeNumber();
             if (!value && (words_.done() || atKeyword())) {
                 return fail(std::to_string(f.size()) + " values in block, header promised " +
                             std::to_string(promised));
             }
             if (!value) return fail(shown(words_.peek()) + " is not a finite number");
-            words_.take();
             f.push_back(*value);
         }
         return !parseDouble(words_.peek()) ||

@@ -1,16 +1,21 @@
 #pragma once
-// One door for every file that holds a BRDF: recognised, read and made ready to answer.
+// A file that holds a BRDF, made ready to answer: each kind of table by its own look-up.
 
 #include <filesystem>
 #include <memory>
 
 #include "proc/core/result.h"
 #include "proc/core/scatterer.h"
+#include "proc/formats/brdf_file.h"
 
 namespace gonio::proc {
 
-/// `.gonio` answers as SampleLookup does, Zemax `.bsdf` as SpecularLookup. File error for anything
-/// else, with the name of what it is where that is known.
+/// A sample answers as SampleLookup does, a table as SpecularLookup or SphericalLookup, ... Usage
+/// error for scattered values, which no look-up answers between, and for channels that are none of
+/// the LEDs' bands.
+[[nodiscard]] Result<std::unique_ptr<const Scatterer>> lookupOver(BrdfFile file);
+
+/// Read and made ready.
 [[nodiscard]] Result<std::unique_ptr<const Scatterer>> openBrdf(const std::filesystem::path& path);
 
 }  // namespace gonio::proc

@@ -1,25 +1,26 @@
 #include "proc/formats/sniff.h"
 
 #include <cctype>
+#include <cstring>
 #include <string>
 
 #include "proc/formats/file_bytes.h"
 #include "proc/formats/gonio_exr.h"
 #include "proc/formats/graw_exr.h"
+#include "proc/formats/words.h"
 
 namespace gonio::proc {
 namespace {
 
 constexpr std::size_t kHead = std::size_t{64} << 10U;
-
-std::string lower(std::string text) {
-    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return text;
-}
+constexpr std::string_view kExrMagic("\x76\x2f\x31\x01");
+constexpr std::uintmax_t kUtiaBytes = std::uintmax_t{3} * 6 * 48 * 6 * 48 * 8;
 
 bool contains(std::string_view text, std::string_view part) {
     return text.find(part) != std::string_view::npos;
 }
+
+bool isSpace(char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; }
 
 /// Does a line of the lower-case text begin with this word?
 bool hasLine(std::string_view text, std::string_view word) {
@@ -29,59 +30,106 @@ bool hasLine(std::string_view text, std::string_view word) {
         const bool first =
             at == 0 || line == std::string_view::npos || text[line] == '\n' || text[line] == '\r';
         const std::size_t end = at + word.size();
-        if (first && (end == text.size() || std::isspace(static_cast<unsigned char>(text[end])))) {
-            return true;
-        }
+        if (first && (end == text.size() || isSpace(text[end]))) return true;
     }
     return false;
 }
 
-FileKind byExtension(const std::filesystem::path& path) {
+std::optional<Format> byExtension(const std::filesystem::path& path) {
     const std::string extension = lower(path.extension().string());
-    if (extension == ".gonio") return FileKind::Gonio;
-    if (extension == ".graw") return FileKind::Graw;
-    if (extension == ".bsdf") return FileKind::Zemax;
-    if (extension == ".csv") return FileKind::PointsCsv;
-    return FileKind::Unknown;
+    if (extension == ".gonio") return Format::Gonio;
+    if (extension == ".graw") return Format::Graw;
+    if (extension == ".bsdf") return Format::Zemax;
+    if (extension == ".csv") return Format::Csv;
+    if (extension == ".json") return Format::Bird;
+    if (extension == ".astm") return Format::Astm;
+    if (extension == ".mbsdf") return Format::Mbsdf;
+    if (extension == ".ssdd") return Format::Ssdd;
+    if (extension == ".pab") return Format::Pab;
+    if (extension == ".alta") return Format::Alta;
+    if (extension == ".binary") return Format::Merl;
+    if (extension == ".anisotropicbsdf") return Format::Speos;
+    return std::nullopt;
 }
 
-FileKind exrKind(std::string_view head, const std::filesystem::path& path) {
-    if (contains(head, kSampleSchema)) return FileKind::Gonio;
-    if (contains(head, kRawSchema)) return FileKind::Graw;
-    const FileKind named = byExtension(path);  // a long attribute can push the schema out of sight
-    return named == FileKind::Gonio || named == FileKind::Graw ? named : FileKind::OtherExr;
+std::optional<Format> exrFormat(std::string_view head, const std::filesystem::path& path) {
+    if (contains(head, kSampleSchema)) return Format::Gonio;
+    if (contains(head, kRawSchema)) return Format::Graw;
+    if (contains(head, "gonioAtlas")) return Format::ExrAtlas;
+    if (contains(head, "bsdfTileAngles")) return Format::ExrTiles;
+    // A long attribute can push the schema out of sight.
+    const auto named = byExtension(path);
+    return named == Format::Gonio || named == Format::Graw ? named : std::nullopt;
+}
+
+/// dims as three int32, and planes of that many doubles behind them.
+bool isMerl(std::string_view head, std::uintmax_t bytes) {
+    std::uint32_t dims[3] = {};
+    if (head.size() < sizeof(dims)) return false;
+    std::memcpy(dims, head.data(), sizeof(dims));
+    std::uintmax_t values = 3;
+    for (const std::uint32_t dim : dims) {
+        if (dim == 0 || dim > 100'000) return false;
+        values *= dim;
+    }
+    return values < (std::uintmax_t{1} << 40U) && bytes == sizeof(dims) + values * 8;
+}
+
+std::optional<Format> binaryFormat(std::string_view head,
+                                   std::uintmax_t bytes,
+                                   const std::filesystem::path& path) {
+    if (head.starts_with(kExrMagic)) return exrFormat(head, path);
+    if (head.starts_with(std::string_view("tensor_file\0", 12))) return Format::Rgl;
+    if (head.starts_with("NVIDIA ARC MBSDF")) return Format::Mbsdf;
+    if (isMerl(head, bytes)) return Format::Merl;
+    if (bytes == kUtiaBytes) return Format::Utia;
+    return std::nullopt;
+}
+
+/// Of lower-case text. Words that only one format has come first.
+std::optional<Format> textFormat(std::string_view text) {
+    if (text.starts_with("optis - ")) return Format::Speos;
+    if (contains(text, "<windowelement")) return Format::Klems;
+    const std::size_t first = text.find_first_not_of(" \t\r\n");
+    if (first != std::string_view::npos && text[first] == '{') return Format::Bird;
+    if (hasLine(text, "data_type") || hasLine(text, "param0_list")) return Format::Ssdd;
+    if (hasLine(text, "#param_in") || hasLine(text, "#dim")) return Format::Alta;
+    if (contains(text, "#format:")) return Format::Pab;
+    if (hasLine(text, "angleofincidence")) return Format::Zemax;
+    if (hasLine(text, "aoi") && hasLine(text, "side")) return Format::LightTools;
+    if (contains(text, "intensity brdf")) return Format::LightTools;
+    if (contains(text, "rt-300s") || contains(text, "azimuth_deg,incidence_deg,receive_deg")) {
+        return Format::Rt300s;
+    }
+    if (hasLine(text, "vars")) return Format::Astm;
+    if (contains(text, "theta_i") || contains(text, "wi_x")) return Format::Csv;
+    return std::nullopt;
 }
 
 }  // namespace
 
-std::string_view name(FileKind kind) {
-    switch (kind) {
-        case FileKind::Gonio: return "gonio sample";
-        case FileKind::Graw: return "gonio raw capture";
-        case FileKind::Zemax: return "Zemax BSDF";
-        case FileKind::PointsCsv: return "CSV of directions";
-        case FileKind::LightTools: return "LightTools BSDF";
-        case FileKind::Rgl: return "RGL tensor file";
-        case FileKind::OtherExr: return "OpenEXR picture";
-        case FileKind::Unknown: break;
-    }
-    return "unknown format";
-}
-
-FileKind sniff(std::string_view head, const std::filesystem::path& path) {
-    if (head.starts_with("\x76\x2f\x31\x01")) return exrKind(head, path);
-    if (head.starts_with(std::string_view("tensor_file\0", 12))) return FileKind::Rgl;
-    const std::string text = lower(std::string(head.substr(0, kHead)));
-    if (hasLine(text, "angleofincidence")) return FileKind::Zemax;
-    if (hasLine(text, "aoi") && hasLine(text, "side")) return FileKind::LightTools;
-    if (contains(text, "theta_i") || contains(text, "wi_x")) return FileKind::PointsCsv;
+std::optional<Format> sniff(std::string_view head,
+                            std::uintmax_t bytes,
+                            const std::filesystem::path& path) {
+    if (const auto binary = binaryFormat(head, bytes, path)) return binary;
+    if (head.starts_with(kExrMagic)) return std::nullopt;
+    std::string text = lower(head.substr(0, kHead));
+    if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+    if (const auto format = textFormat(text)) return format;
     return byExtension(path);
 }
 
-Result<FileKind> sniffFile(const std::filesystem::path& path) {
+Result<Format> sniffFile(const std::filesystem::path& path) {
     const Result<std::string> head = readHead(path, kHead);
     if (!head) return head.error();
-    return sniff(*head, path);
+    std::error_code unreadable;
+    const std::uintmax_t bytes = std::filesystem::file_size(path, unreadable);
+    if (const auto format = sniff(*head, bytes, path)) return *format;
+    const bool picture = head->starts_with(kExrMagic);
+    return Error{ErrorKind::File,
+                 "read " + path.string() + ": cannot be read as a BRDF: " +
+                     (picture ? "an OpenEXR picture without one"
+                              : "unknown format; if it is one of ours, --from names it")};
 }
 
 }  // namespace gonio::proc

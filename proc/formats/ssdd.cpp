@@ -95,6 +95,9 @@ private:
         if (hash != std::string_view::npos) {
             std::string_view comment = text.substr(hash + 1);
             if (comment.starts_with(' ')) comment.remove_prefix(1);
+            if (comments_.size() == Words::kMostComments) {
+                return fail("more than " + std::to_string(Words::kMostComments) + " comments");
+            }
             comments_.emplace_back(comment);
             text = text.substr(0, hash);
         }

@@ -5,10 +5,14 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include "proc/core/number_text.h"
 
 namespace gonio::proc {
 
@@ -37,10 +41,26 @@ public:
         at_ += word.size();
         return word;
     }
-    [[nodiscard]] bool done() { return peek().empty(); }
+    /// Takes the next word where it is one finite number, in one pass; else takes nothing.
+    std::optional<double> takeNumber() {
+        skipSpace();
+        const auto number = leadingDouble(text_.substr(at_));
+        if (!number) return std::nullopt;
+        const std::size_t end = at_ + number->length;
+        if (end < text_.size() && !isSpace(text_[end])) return std::nullopt;
+        at_ = end;
+        return number->value;
+    }
+    [[nodiscard]] bool done() {
+        skipSpace();
+        return at_ == text_.size();
+    }
     [[nodiscard]] int line() const { return line_; }
     [[nodiscard]] std::size_t bytesLeft() const { return text_.size() - at_; }
     [[nodiscard]] std::vector<std::string> takeComments() { return std::move(comments_); }
+    /// More comments than any file that was made to be read: what follows is not kept.
+    [[nodiscard]] bool tooManyComments() const { return comments_.size() > kMostComments; }
+    static constexpr std::size_t kMostComments = 10'000;
 
 private:
     static bool isSpace(char c) {
@@ -67,7 +87,7 @@ private:
         const std::size_t end = std::min(text_.find_first_of("\r\n", at_), text_.size());
         std::string_view comment = text_.substr(at_ + 1, end - at_ - 1);
         if (!comment.empty() && comment.front() == ' ') comment.remove_prefix(1);
-        comments_.emplace_back(comment);
+        if (!tooManyComments()) comments_.emplace_back(comment);
         at_ = end;
     }
 

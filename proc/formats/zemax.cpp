@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -32,8 +33,6 @@ std::string_view sectionName(TableColour colour, std::size_t plane) {
     return colour == TableColour::Xyz ? kXyzSections[plane] : std::string_view("Monochrome");
 }
 
-std::size_t planeCount(TableColour colour) { return colour == TableColour::Xyz ? 3 : 1; }
-
 /// a * b, or the largest number where that does not fit.
 std::size_t productOrMost(std::size_t a, std::size_t b) {
     std::size_t product = 0;
@@ -46,7 +45,7 @@ public:
     Reader(std::string_view text, std::string_view name) : words_(text), name_(name) {}
 
     Result<SpecularTable> read() {
-        if (header() && headerIsWhole() && sections()) {
+        if (header() && headerIsWhole() && sections() && commentsFit()) {
             table_.comments = words_.takeComments();
             return std::move(table_);
         }
@@ -75,6 +74,11 @@ private:
             if (!headerLine(key)) return false;
         }
         return true;
+    }
+
+    bool commentsFit() {
+        return !words_.tooManyComments() ||
+               fail("more than " + std::to_string(Words::kMostComments) + " comments");
     }
 
     [[nodiscard]] bool atSection() {
@@ -210,6 +214,8 @@ private:
     bool data() {
         TablePlane plane;
         const std::size_t blocks = table_.rotationDeg.size() * table_.incidenceDeg.size();
+        plane.f.reserve(table_.nodeCount());  // bounded by headerIsWhole()
+        plane.tis.reserve(blocks);
         for (std::size_t i = 0; i < blocks; ++i) {
             if (!keyword("TIS")) return false;
             const auto tis = parseDouble(words_.peek());
@@ -223,21 +229,23 @@ private:
     }
 
     bool block(std::vector<double>& f) {
-        const std::size_t radials = table_.radialDeg.size();
-        const std::size_t promised = table_.azimuthDeg.size() * radials;
+        const std::size_t promised = table_.azimuthDeg.size() * table_.radialDeg.size();
         const std::size_t start = f.size();
-        for (std::size_t got = 0; !atBlockEnd(); ++got) {
-            const auto value = parseDouble(words_.peek());
-            if (!value) return fail(shown(words_.peek()) + " is not a finite number");
-            if (got == promised) {
-                return fail("more than " + std::to_string(promised) +
-                            " values in block, header promised " + std::to_string(promised));
-            }
-            words_.take();
+        std::size_t got = 0;
+        for (; got < promised; ++got) {
+            const auto value = words_.takeNumber();
+            if (!value) break;
             f.push_back(*value);
         }
-        if (f.size() - start != promised) {
-            return fail(std::to_string(f.size() - start) + " values in block, header promised " +
+        if (!atBlockEnd()) {
+            if (!parseDouble(words_.peek())) {
+                return fail(shown(words_.peek()) + " is not a finite number");
+            }
+            return fail("more than " + std::to_string(promised) +
+                        " values in block, header promised " + std::to_string(promised));
+        }
+        if (got != promised) {
+            return fail(std::to_string(got) + " values in block, header promised " +
                         std::to_string(promised));
         }
         if (table_.radialDeg.front() == 0) shareTheCentre(f, start);
@@ -306,15 +314,19 @@ void appendPlane(Written& out, const SpecularTable& table, std::size_t plane) {
     const std::size_t block = table.azimuthDeg.size() * radials;
     std::size_t lost = 0;
     std::size_t lostTis = 0;
-    const auto finite = [](double value, std::size_t& count) {
+    const auto append = [&](double value, std::size_t& count) {
         count += std::isfinite(value) ? 0U : 1U;
-        return std::isfinite(value) ? shortest(value) : "0";
+        appendShortest(out.bytes, std::isfinite(value) ? value : 0);
     };
     out.bytes += "\n" + std::string(sectionName(table.colour, plane)) + "\nDataBegin\n";
     for (std::size_t i = 0; i < values.f.size(); ++i) {
-        if (i % block == 0) out.bytes += "TIS  " + finite(values.tis[i / block], lostTis) + "\n";
-        out.bytes += finite(values.f[i], lost);
-        out.bytes += (i + 1) % radials == 0 ? "\n" : "\t";
+        if (i % block == 0) {
+            out.bytes += "TIS  ";
+            append(values.tis[i / block], lostTis);
+            out.bytes += '\n';
+        }
+        append(values.f[i], lost);
+        out.bytes += (i + 1) % radials == 0 ? '\n' : '\t';
     }
     out.bytes += "DataEnd\n";
     out.loss.add(Loss::Masked, "nodes without a finite value, written as 0", lost);
@@ -334,6 +346,7 @@ Result<SpecularTable> readZemax(const std::filesystem::path& path) {
 }
 
 Written writeZemax(const SpecularTable& table) {
+    assert(table.colour != TableColour::LedBands);  // three files, or a stated conversion to XYZ
     Written out;
     appendComments(out.bytes, table.comments);
     out.bytes += "Source  Measured\nSymmetry  " + std::string(spelling(table.symmetry));
@@ -350,8 +363,8 @@ Written writeZemax(const SpecularTable& table) {
     return out;
 }
 
-std::string wavelengthComment(Band band) {
-    return "Wavelength (nm) = " + shortest(nanometres(band));
+std::string wavelengthComment(double nanometres) {
+    return "Wavelength (nm) = " + shortest(nanometres);
 }
 
 }  // namespace gonio::proc

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "proc/core/direction.h"
@@ -34,5 +35,9 @@ struct BrdfRows {
     /// Combined standard uncertainty; empty where it is not known.
     [[nodiscard]] std::optional<double> uAt(std::size_t pair, std::size_t channel) const;
 };
+
+/// The lights of all pairs stand at one azimuth, those at the normal apart, which have none: what a
+/// list of directions looks like that takes its sample as isotropic.
+[[nodiscard]] bool lightsAtOneAzimuth(std::span<const LightView> pairs);
 
 }  // namespace gonio::proc

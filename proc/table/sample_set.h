@@ -58,6 +58,9 @@ struct LedTable {
     return {.in = lightOf(led), .out = turned ? wo.turned(-led.rotation) : wo};
 }
 
+/// Of each rotation at most 8 LEDs, and 36 rotations of a rig's four; each takes some 2 MB.
+inline constexpr std::size_t kMostTables = 144;
+
 /// LEDs by ascending rotation, and of each rotation by ascending incidence.
 struct SampleSet {
     SampleInfo info;

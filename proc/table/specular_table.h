@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "proc/core/bands.h"
 #include "proc/core/direction.h"
 
 namespace gonio::proc {
@@ -28,8 +29,12 @@ enum class ScatterKind {
 /// Xyz planes are CIE tristimulus values, never the LED bands.
 enum class TableColour {
     Monochrome,
-    Xyz
+    Xyz,
+    LedBands  ///< R, G, B: no Zemax file
 };
+[[nodiscard]] constexpr std::size_t planeCount(TableColour colour) {
+    return colour == TableColour::Monochrome ? 1 : 3;
+}
 
 /// One node: positions on the four axes.
 struct TableNode {
@@ -47,7 +52,7 @@ struct SpecularTable {
     ScatterKind kind = ScatterKind::Brdf;
     TableColour colour = TableColour::Monochrome;
     std::vector<double> rotationDeg{0}, incidenceDeg, azimuthDeg, radialDeg;
-    std::vector<TablePlane> planes;     ///< one, or X, Y, Z
+    std::vector<TablePlane> planes;     ///< one, or X, Y, Z, or R, G, B
     std::vector<std::string> comments;  ///< free text: wavelength, sample, instrument
 
     /// Nodes of one plane.
@@ -55,12 +60,18 @@ struct SpecularTable {
     [[nodiscard]] std::size_t index(TableNode node) const;
     [[nodiscard]] std::size_t tisIndex(TableNode node) const;
 
-    /// The light and the view of a node. Rotation r turns the sample by +r under a fixed light: in
-    /// the sample's frame the light stands at azimuth -r. The light of incidence 0 is the normal.
+    /// The light and the view of a node; of transmission the view on the other side, across the
+    /// surface from where reflection would be. Rotation r turns the sample by +r under a fixed
+    /// light: in the sample's frame the light stands at azimuth -r. The light of incidence 0 is the
+    /// normal.
     [[nodiscard]] LightView pairAt(TableNode node) const;
     /// Above the horizon by more than rounding; for BTDF the other side of the surface counts.
     [[nodiscard]] bool canHoldData(TableNode node) const;
     [[nodiscard]] bool hasData(std::size_t plane, TableNode node) const;
+    /// In every plane.
+    [[nodiscard]] bool hasData(TableNode node) const;
+    /// f of R, G, B; of a monochrome table the same thrice. Of an XYZ table it is none of them.
+    [[nodiscard]] LedBands bandsAt(TableNode node) const;
     /// The node's direction stands in the table a second time: the pole of an incidence at another
     /// azimuth than the first, or the azimuth of the first one after a full turn.
     [[nodiscard]] bool repeatsDirection(TableNode node) const;

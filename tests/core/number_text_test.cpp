@@ -40,6 +40,30 @@ TEST(NumberText, ShortestReadsBackToTheSameBits) {
     EXPECT_EQ(shortest(0.1F), "0.1");
 }
 
+TEST(NumberText, AppendsTheShortestDigits) {
+    std::string text = "f ";
+    for (const double value :
+         {0.1, -std::numeric_limits<double>::min(), std::numeric_limits<double>::infinity()}) {
+        const std::string before = text;
+        appendShortest(text, value);
+        EXPECT_EQ(text, before + shortest(value));
+    }
+}
+
+TEST(NumberText, LeadsWithWhatIsANumberByItself) {
+    for (const char* number : {"1", "-2.5e-3", "+7", "0.1", "5e-324"}) {
+        for (const char* rest : {"", " 2", "\t", ",5", "x"}) {
+            const auto leading = leadingDouble(std::string(number) + rest);
+            ASSERT_TRUE(leading) << number << rest;
+            EXPECT_EQ(leading->value, *parseDouble(number));
+            EXPECT_EQ(leading->length, std::string_view(number).size());
+        }
+    }
+    for (const char* none : {"", " 1", "x", "+", "+-1", "-", "nan", "inf 1", "1e999", "."}) {
+        EXPECT_FALSE(leadingDouble(none)) << none;
+    }
+}
+
 TEST(NumberText, SaysWhatIsNoNumber) {
     const double inf = std::numeric_limits<double>::infinity();
     EXPECT_EQ(shortest(std::numeric_limits<double>::quiet_NaN()), "nan");

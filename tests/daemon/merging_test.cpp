@@ -207,15 +207,5 @@ TEST(Merging, TheSameFileTwiceCountsOnce) {
     expectRefused(*inputs, {}, {"one sample"});
 }
 
-TEST(Merging, BandsAreKnownByNameOrWavelength) {
-    EXPECT_EQ(bandOfName("x/paint_R.bsdf"), Band::R);
-    EXPECT_EQ(bandOfName("red-cup Green.bsdf"), Band::G);
-    EXPECT_EQ(bandOfName("g/Blue.bsdf"), Band::B);
-    EXPECT_EQ(bandOfName("grey.bsdf"), std::nullopt);
-    EXPECT_EQ(bandOfWavelength(525), Band::G);
-    EXPECT_EQ(bandOfWavelength(550), Band::G);
-    EXPECT_EQ(bandOfWavelength(560), std::nullopt);
-}
-
 }  // namespace
 }  // namespace gonio::daemon

@@ -209,7 +209,31 @@ TEST(ExrParts, RefuseAttributesThatPromiseMoreThanTheyHold) {
                                    attribute("tiles", "tiledesc", word(1))}) {
         std::string file = smallFile();
         file.insert(kHeaderStart, lie);
-        EXPECT_TRUE(refuses(decodeExr(file, kLimits), {"exr: "}));
+        EXPECT_TRUE(refuses(decodeExr(file, kLimits), {"exr: ", "which it says that it is"}));
+    }
+}
+
+// Found by libFuzzer: the library reads a channel list on to its end, wherever that is, and took
+// the next bytes for the size of something to make room for.
+TEST(ExrParts, RefuseAChannelListThatGoesOnBeyondItsSize) {
+    const std::string list = std::string("f\0", 2) + word(2) + word(0) + word(1) + word(1);
+    for (const std::string& wrong : {list, list + list, list + '\0' + '\0', std::string()}) {
+        std::string file = smallFile();
+        file.insert(kHeaderStart, attribute("more", "chlist", wrong));
+        EXPECT_TRUE(refuses(decodeExr(file, kLimits), {"'more' is not 'chlist'"}));
+    }
+}
+
+TEST(ExrParts, TakeSoundAttributesThatTheyDoNotKnow) {
+    for (const std::string& other :
+         {attribute("preview", "preview", word(2) + word(1) + word(0) + word(0)),
+          attribute("names", "stringvector", word(2) + "ab" + word(0)),
+          attribute("times", "floatvector", word(0) + word(1)),
+          attribute("ours", "of our own", "any bytes")}) {
+        std::string file = smallFile();
+        file.insert(kHeaderStart, other);
+        // Where the pixels begin stands in the file: only the headers can be read of this one.
+        EXPECT_TRUE(refuses(decodeExr(file, kLimits), {"damaged"}));
     }
 }
 
@@ -261,6 +285,28 @@ TEST(ExrParts, RefusesMorePixelsThanItWasToldToRead) {
     EXPECT_TRUE(decodeExr(smallFile(), {.largest = {4, 3}, .parts = 2, .bytes = bytes}));
     EXPECT_TRUE(refuses(decodeExr(smallFile(), {.largest = {4, 3}, .parts = 2, .bytes = bytes - 1}),
                         {"exr: ", std::to_string(bytes) + " bytes of pixels"}));
+}
+
+TEST(ExrParts, StoreHalvesAndNumbersInASinglePart) {
+    ExrPart part;
+    part.size = {2, 1};
+    part.floats["R"] = {0.1F, 65504.0F};
+    part.floats["G"] = {1.0F, -0.25F};
+    part.numbers["angles"] = {0, 0.25F, -1e30F};
+    part.numbers["none"] = {};
+    part.half = true;
+    const auto bytes = encodeExr(std::vector{part});
+    ASSERT_TRUE(bytes);
+    EXPECT_EQ((*bytes)[5] & 0x10, 0);  // of one part, as plain readers want it
+    const auto back = decodeExr(*bytes, {.largest = {2, 1}, .parts = 1});
+    ASSERT_TRUE(back) << back.error().message;
+    EXPECT_TRUE(back->front().half);
+    EXPECT_EQ(back->front().numbers, part.numbers);
+    EXPECT_EQ(back->front().floats.at("G"), part.floats["G"]);
+    // Nearest of 11 significant bits.
+    EXPECT_NEAR(back->front().floats.at("R")[0], 0.1F, 0.1F / 2048);
+    EXPECT_EQ(back->front().floats.at("R")[1], 65504.0F);
+    EXPECT_EQ(*encodeExr(*back), *bytes);
 }
 
 }  // namespace

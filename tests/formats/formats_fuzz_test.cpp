@@ -208,7 +208,8 @@ TEST(FormatsFuzz, SniffAlwaysHasAName) {
     for (int i = 0; i < cases(50'000); ++i) {
         const std::string head = mutated(heads[below(random, std::size(heads))], random);
         const std::string path = mutated("some folder/file.bsdf", random);
-        ASSERT_FALSE(name(sniff(head, path)).empty());
+        const auto found = sniff(head, head.size(), path);
+        ASSERT_TRUE(!found || !name(*found).empty());
     }
 }
 

@@ -425,9 +425,9 @@ TEST(Zemax, NamesTheFileThatItCannotRead) {
 }
 
 TEST(Zemax, PutsTheWavelengthIntoAComment) {
-    EXPECT_EQ(wavelengthComment(Band::R), "Wavelength (nm) = 630");
-    EXPECT_EQ(wavelengthComment(Band::G), "Wavelength (nm) = 525");
-    EXPECT_EQ(wavelengthComment(Band::B), "Wavelength (nm) = 465");
+    EXPECT_EQ(wavelengthComment(630), "Wavelength (nm) = 630");
+    EXPECT_EQ(wavelengthComment(525), "Wavelength (nm) = 525");
+    EXPECT_EQ(wavelengthComment(465), "Wavelength (nm) = 465");
 }
 
 }  // namespace

@@ -132,7 +132,11 @@ inline std::string complaintsOf(const nlohmann::json& document) {
     constexpr std::string_view kHead = "gonio/", kTail = "/1";
     if (!schema.starts_with(kHead) || !schema.ends_with(kTail)) return "no schema: " + schema;
     std::string name = schema.substr(kHead.size(), schema.size() - kHead.size() - kTail.size());
-    if (name == "info") name += "-" + document.value("kind", "");
+    if (name == "info") {
+        const std::string kind = document.value("kind", "");
+        const bool own = std::filesystem::exists(JsonSchema::folder() / ("info-" + kind + ".json"));
+        name += "-" + (own ? kind : std::string("file"));
+    }
     if (!std::filesystem::exists(JsonSchema::folder() / (name + ".json"))) {
         return "no docs/json/" + name + ".json";
     }

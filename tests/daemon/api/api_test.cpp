@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/exports.h"
+#include "daemon/conversion_input.h"
 #include "daemon/problem.h"
 #include "proc/formats/gonio_exr.h"
 #include "tests/daemon/engine/running_engine.h"
@@ -279,12 +279,15 @@ TEST_F(ApiOnSim, SampleIsListedAndItsFilesGivenOut) {
 
 TEST_F(ApiOnSim, SampleIsExported) {
     keepSample("tile");
-    const auto surface = openMaterial("sample:tile", folder.path());
-    ASSERT_TRUE(surface) << surface.error().message;
-    const auto green = exportAs(*surface, ExportFormat::Zemax, Band::G);
-    EXPECT_EQ(get("samples/tile/exports/zemax", {{"band", "g"}}).body, green->front().bytes);
-    EXPECT_EQ(get("samples/tile/exports/csv").body,
-              exportAs(*surface, ExportFormat::Csv)->front().bytes);
+    const auto bytes = [&](proc::Format format, const std::vector<Band>& bands) {
+        const auto opened =
+            openConversion({.f = "sample:tile", .bands = {.bands = bands}}, folder.path());
+        EXPECT_TRUE(opened);
+        return proc::convertTo(opened->source, {.to = format})->front().bytes;
+    };
+    EXPECT_EQ(get("samples/tile/exports/zemax", {{"band", "g"}}).body,
+              bytes(proc::Format::Zemax, {Band::G}));
+    EXPECT_EQ(get("samples/tile/exports/bird").body, bytes(proc::Format::Bird, {}));
     EXPECT_TRUE(proc::decodeGonio(get("samples/tile/exports/gonio").body, "tile"));
     expectProblem(get("samples/tile/exports/zemax"), 400, ErrorKind::Usage, {"?band="});
     expectProblem(get("samples/tile/exports/zemax", {{"band", "x"}}), 400, ErrorKind::Usage);

@@ -1,0 +1,145 @@
+#include "proc/export/conversion_steps.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "proc/export/one_band.h"
+#include "proc/export/resampling.h"
+#include "proc/formats/open.h"
+#include "proc/table/band_channels.h"
+
+namespace gonio::proc {
+namespace {
+
+/// Probes that are asked at most: a quarter of a second of the slowest estimator.
+constexpr std::size_t kMostProbes = 40'000;
+constexpr std::size_t kCells = 20'626;
+
+struct PlainLosses {
+    std::size_t uncertain = 0, flagged = 0, transmitted = 0;
+};
+
+void count(PlainLosses& lost, const SampleSet& set) {
+    for (const LedTable& led : set.leds) {
+        for (const CellSamples& cells : led.bands) {
+            for (std::size_t i = 0; i < cells.size(); ++i) {
+                if (!cells.present(i)) continue;
+                if (!std::isnan(cells.uRandom[i])) ++lost.uncertain;
+                if (cells.flags[i] != Flags{Flag::Measured}) ++lost.flagged;
+            }
+        }
+    }
+}
+void count(PlainLosses& lost, const BrdfRows& rows) {
+    for (std::size_t i = 0; i < rows.f.size(); ++i) {
+        if (std::isnan(rows.f[i])) continue;
+        if (!rows.uRandom.empty() && !std::isnan(rows.uRandom[i])) ++lost.uncertain;
+        if (!rows.flags.empty() && rows.flags[i] != Flags{Flag::Measured}) ++lost.flagged;
+        if (!rows.pairs[i / rows.channels.size()].out.aboveHorizon()) ++lost.transmitted;
+    }
+}
+void count(PlainLosses& lost, const SphericalTable& table) {
+    for (const SphericalBlock& block : table.blocks) {
+        if (!block.transmission) continue;
+        lost.transmitted += static_cast<std::size_t>(
+            std::count_if(block.f.begin(), block.f.end(), [](double f) { return !std::isnan(f); }));
+    }
+}
+template <class Other>
+void count(PlainLosses& /*lost*/, const Other& /*table*/) {}
+
+/// What the source says, at its own values where nothing answers between them.
+std::vector<Probe> probesOfSource(const ConversionSource& source) {
+    if (source.scatterer) {
+        const std::size_t lights = source.incidenceDeg.size() * source.rotationDeg.size();
+        const std::size_t stride = std::max<std::size_t>(1, lights * kCells / kMostProbes);
+        return probesOf(*source.scatterer, source.incidenceDeg, source.rotationDeg, stride);
+    }
+    std::vector<Probe> probes;
+    const auto* rows = source.file ? source.file->as<BrdfRows>() : nullptr;
+    if (rows == nullptr) return probes;
+    const auto bands = bandChannels(rows->channels);
+    if (!bands) return probes;
+    for (std::size_t i = 0; i < rows->pairs.size(); ++i) {
+        Probe probe{rows->pairs[i], {}};
+        for (const Band band : kBands) {
+            probe.f[band] = bands->bands[index(band)].of(
+                [&](std::size_t channel) { return rows->f[rows->index(i, channel)]; });
+        }
+        probes.push_back(probe);
+    }
+    return probes;
+}
+
+}  // namespace
+
+bool mayCopy(const ConversionSource& source, const ConversionWish& wish) {
+    return source.file != nullptr && !source.estimated && !wish.grid.asks();
+}
+
+std::vector<double> incidencesFor(const ConversionSource& source, const ConversionWish& wish) {
+    return wish.grid.incidenceDeg.value_or(source.incidenceDeg);
+}
+
+std::shared_ptr<const Scatterer> bandOf(const ConversionSource& source, Band band) {
+    if (source.scatterer->bandCount() == BandCount::One) return source.scatterer;
+    return std::make_shared<OneBand>(source.scatterer, band);
+}
+
+std::shared_ptr<const Scatterer> allBands(const ConversionSource& source) {
+    return source.bands.size() == 1 ? bandOf(source, source.bands.front()) : source.scatterer;
+}
+
+std::vector<Channel> channelsFor(const ConversionSource& source) {
+    if (!source.monochrome()) return Channel::ofBands();
+    if (source.file) {
+        const std::vector<Channel> own = channelsOf(*source.file);
+        if (own.size() == 1) return own;
+    }
+    if (source.bands.empty()) return {Channel{}};
+    return {Channel::of(source.bands.front())};
+}
+
+Result<void> mustAnswer(const ConversionSource& source, Format to) {
+    if (source.scatterer) return {};
+    return Error{ErrorKind::Usage,
+                 "a " + std::string(factsOf(to).title) +
+                     " is a grid, and these are scattered values: --estimator auto answers between "
+                     "them"};
+}
+
+void addPlainLosses(LossReport& loss, const ConversionSource& source) {
+    if (!source.file) return;
+    PlainLosses lost;
+    std::visit([&](const auto& content) { count(lost, content); }, source.file->content);
+    loss.add(Loss::Dropped, "uncertainties", lost.uncertain);
+    loss.add(Loss::Dropped, "flags other than measured", lost.flagged);
+    loss.add(Loss::Dropped, "values of transmission", lost.transmitted);
+}
+
+void addResampling(ConvertedFile& file,
+                   const ConversionSource& source,
+                   const Asked& asked,
+                   Format to,
+                   std::optional<Band> band) {
+    LossReport::Item item{Loss::Resampled, "values asked at the format's directions", asked.nodes};
+    const std::vector<Band> bands = band                   ? std::vector{*band}
+                                    : source.bands.empty() ? std::vector{Band::R}
+                                                           : source.bands;
+    Result<BrdfFile> back = decodeBrdf(to, file.bytes, "what was written");
+    if (back) {
+        if (auto lookup = lookupOver(std::move(*back))) {
+            const auto error = resamplingError(probesOfSource(source), **lookup, bands);
+            if (error) {
+                item.largestError = error->largest;
+                item.weightedError = error->weighted;
+                file.loss.add(Loss::Masked, "values of the source without one nearby", error->lost);
+            }
+        }
+    }
+    file.loss.items.insert(file.loss.items.begin(), std::move(item));
+    file.loss.add(Loss::Masked, "directions without an answer", asked.unanswered);
+    file.loss.add(Loss::Extrapolated, "values from beyond what was measured", asked.extrapolated);
+}
+
+}  // namespace gonio::proc

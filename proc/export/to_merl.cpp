@@ -1,0 +1,28 @@
+// Anything as a MERL table.
+
+#include "proc/export/conversion_steps.h"
+#include "proc/export/half_difference_fill.h"
+#include "proc/formats/merl.h"
+
+namespace gonio::proc {
+
+Converted toMerl(const ConversionSource& source, const ConversionWish& wish) {
+    const auto* table = mayCopy(source, wish) ? source.file->as<HalfDifferenceTable>() : nullptr;
+    if (table != nullptr) {
+        Written file = writeMerl(*table, source.about);
+        return std::vector{ConvertedFile{"", std::move(file.bytes), std::move(file.loss)}};
+    }
+    if (auto answers = mustAnswer(source, Format::Merl); !answers) return answers.error();
+    const FilledHalfDifference filled = fillHalfDifference(*allBands(source));
+    Written written = writeMerl(filled.table, source.about);
+    ConvertedFile file{"", std::move(written.bytes), std::move(written.loss)};
+    addPlainLosses(file.loss, source);
+    if (source.monochrome()) {
+        file.loss.add(Loss::Dropped, "wavelength: one value stands in R, G and B", 1);
+    }
+    addResampling(
+        file, source, {filled.nodes, filled.unanswered, filled.extrapolated}, Format::Merl);
+    return std::vector{std::move(file)};
+}
+
+}  // namespace gonio::proc

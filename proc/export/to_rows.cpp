@@ -1,0 +1,92 @@
+// Anything as a list of directions: BiRD, ASTM, pab-opto, ALTA, CSV.
+
+#include <algorithm>
+
+#include "proc/export/conversion_steps.h"
+#include "proc/export/sample_fill.h"
+#include "proc/formats/alta.h"
+#include "proc/formats/astm.h"
+#include "proc/formats/bird.h"
+#include "proc/formats/pab.h"
+#include "proc/formats/scattered_csv.h"
+#include "proc/table/rows_of.h"
+
+namespace gonio::proc {
+namespace {
+
+struct Rows {
+    BrdfRows rows;
+    std::optional<Asked> asked;  ///< where they are not the source's own values
+};
+
+std::optional<BrdfRows> ownRows(const ConversionSource& source) {
+    const BrdfFile& file = *source.file;
+    if (const auto* rows = file.as<BrdfRows>()) return *rows;
+    if (const auto* sample = file.as<SampleSet>()) return rowsOf(*sample);
+    if (const auto* spherical = file.as<SphericalTable>()) return rowsOf(*spherical);
+    const auto* table = file.as<SpecularTable>();
+    if (table == nullptr || table->colour == TableColour::LedBands) return std::nullopt;
+    return rowsOf(*table, channelsFor(source).front());
+}
+
+/// Answers at the cells of each incidence.
+Rows answered(const ConversionSource& source, const ConversionWish& wish) {
+    SampleGrid grid{.incidenceDeg = incidencesFor(source, wish),
+                    .rotationDeg = source.rotationDeg,
+                    .bands = source.bands};
+    if (grid.bands.empty()) grid.bands = {Band::R};
+    const FilledSample filled = fillSample(*allBands(source), grid, source.about);
+    Rows made{rowsOf(filled.set), Asked{filled.asked, filled.unanswered, filled.extrapolated}};
+    if (source.monochrome()) made.rows.channels = channelsFor(source);
+    return made;
+}
+
+Result<Rows> rowsFor(const ConversionSource& source, const ConversionWish& wish) {
+    if (mayCopy(source, wish)) {
+        if (auto own = ownRows(source)) return Rows{std::move(*own), {}};
+    }
+    if (auto answers = mustAnswer(source, wish.to); !answers) return answers.error();
+    return answered(source, wish);
+}
+
+std::vector<ConvertedFile> one(Written file) {
+    return {ConvertedFile{"", std::move(file.bytes), std::move(file.loss)}};
+}
+
+/// A file for each light.
+Converted toPab(const BrdfRows& rows, const Metadata& about) {
+    Result<WrittenPab> written = writePab(rows, about);
+    if (!written) return written.error();
+    std::vector<ConvertedFile> files;
+    for (PabFile& file : written->files) files.push_back({file.suffix, std::move(file.bytes), {}});
+    if (!files.empty()) files.front().loss = std::move(written->loss);
+    if (files.size() == 1) files.front().suffix.clear();
+    return files;
+}
+
+Converted written(const BrdfRows& rows, Format to, const Metadata& about) {
+    switch (to) {
+        case Format::Bird: return one(writeBird(rows, about));
+        case Format::Astm: return one(writeAstm(rows, about));
+        case Format::Pab: return toPab(rows, about);
+        case Format::Alta: return one(writeAlta(rows, about));
+        default: return one(writeScatteredCsv(rows, about));
+    }
+}
+
+}  // namespace
+
+Converted toRows(const ConversionSource& source, const ConversionWish& wish) {
+    Result<Rows> rows = rowsFor(source, wish);
+    if (!rows) return rows.error();
+    Converted files = written(rows->rows, wish.to, source.about);
+    if (!files || !rows->asked) return files;
+    LossReport& loss = files->front().loss;
+    loss.items.insert(
+        loss.items.begin(),
+        {Loss::Resampled, "values asked at the cells of each incidence", rows->asked->nodes});
+    loss.add(Loss::Extrapolated, "values from beyond what was measured", rows->asked->extrapolated);
+    return files;
+}
+
+}  // namespace gonio::proc

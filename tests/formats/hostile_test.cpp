@@ -1,0 +1,119 @@
+// Every reader against every kind of damage to its small sound files: each is taken or refused in
+// one File error of one line, with at most 50 MiB and a second for a file of a megabyte. The
+// deadline is ten times that second of processor time: what fails it does so on any machine.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <ctime>
+
+#include "proc/formats/format.h"
+#include "tests/formats/allocation_peak.h"
+#include "tests/formats/damage.h"
+#include "tests/formats/readers.h"
+
+namespace gonio::test {
+namespace {
+
+constexpr std::size_t kMostBytes = std::size_t{50} << 20U;
+constexpr double kMostSeconds = 10;
+constexpr std::size_t kLongestMessage = 600;
+
+double processorSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+/// The worst of all files that one reader was given.
+struct Cost {
+    double seconds = 0;
+    std::size_t bytes = 0;
+    std::size_t refused = 0;
+    std::string slowest, largest;
+};
+
+void read(const Reader& reader, const Damaged& file, Cost& cost) {
+    const std::string where = std::string(reader.name) + ", " + file.what;
+    const double begin = processorSeconds();
+    const AllocationPeak peak;
+    const std::optional<Error> complaint = reader.complaint(file.bytes);
+    const double seconds = processorSeconds() - begin;
+    EXPECT_LE(seconds, kMostSeconds) << where;
+    EXPECT_LE(peak.bytes(), kMostBytes) << where;
+    if (seconds > cost.seconds) cost = {seconds, cost.bytes, cost.refused, where, cost.largest};
+    if (peak.bytes() > cost.bytes) {
+        cost.bytes = peak.bytes();
+        cost.largest = where;
+    }
+    if (!complaint) return;
+    ++cost.refused;
+    const std::string& message = complaint->message;
+    EXPECT_EQ(complaint->kind, ErrorKind::File) << where << ": " << message;
+    EXPECT_LE(message.size(), kLongestMessage) << where << ": " << message.substr(0, 800);
+    EXPECT_EQ(message.find_first_of("\r\n"), std::string::npos) << where << ": " << message;
+    EXPECT_NE(message.find("in: "), std::string::npos) << where << ": " << message;
+}
+
+using Damage = std::vector<Damaged> (*)(std::string_view sound);
+
+class HostileFiles : public testing::TestWithParam<Reader> {
+protected:
+    static void sufferAll(Damage damage) {
+        Cost cost;
+        std::size_t files = 0;
+        for (const std::string& sound : GetParam().sound()) {
+            for (const Damaged& each : damage(sound)) {
+                ++files;
+                read(GetParam(), each, cost);
+                if (HasFailure()) return;
+            }
+        }
+        std::printf("%zu files, %zu refused; at most %.0f ms (%s), %.1f MiB (%s)\n",
+                    files,
+                    cost.refused,
+                    1e3 * cost.seconds,
+                    cost.slowest.c_str(),
+                    static_cast<double>(cost.bytes) / (1 << 20),
+                    cost.largest.c_str());
+        if (GetParam().name != "sniff" && files > 0) {
+            EXPECT_GT(cost.refused, 0U);
+        }
+    }
+};
+
+TEST_P(HostileFiles, AreSoundToBeginWith) {
+    ASSERT_FALSE(GetParam().sound().empty());
+    for (const std::string& sound : GetParam().sound()) {
+        const auto complaint = GetParam().complaint(sound);
+        EXPECT_FALSE(complaint) << complaint->message;
+    }
+}
+
+TEST_P(HostileFiles, MayEndAnywhere) { sufferAll(truncated); }
+TEST_P(HostileFiles, MayHoldMoreThanTheyShould) { sufferAll(extended); }
+TEST_P(HostileFiles, MayHoldAnyNumber) {
+    if (GetParam().text) sufferAll(withBadNumbers);
+}
+TEST_P(HostileFiles, MayHaveLinesTwiceOrNot) {
+    if (GetParam().text) sufferAll(withBadLines);
+}
+TEST_P(HostileFiles, MayHoldAnyBytes) { sufferAll(withBadWords); }
+TEST_P(HostileFiles, MayHoldAMegabyteOfOneWord) { sufferAll(withAMegabyteOfOne); }
+
+std::string nameOf(const testing::TestParamInfo<Reader>& info) {
+    std::string name(info.param.name);
+    std::erase(name, '-');
+    return name;
+}
+INSTANTIATE_TEST_SUITE_P(Of, HostileFiles, testing::ValuesIn(readers()), nameOf);
+
+/// Formats without a reader, or whose readers are not tried here.
+constexpr std::string_view kNotTried[] = {"rt300s"};
+
+TEST(HostileFilesOf, EveryFormatAreTried) {
+    for (const proc::FormatFacts& facts : proc::formats()) {
+        const bool known = std::count(std::begin(kNotTried), std::end(kNotTried), facts.name) > 0;
+        EXPECT_EQ(readerOf(facts.name) == nullptr, known) << facts.name;
+    }
+}
+
+}  // namespace
+}  // namespace gonio::test
