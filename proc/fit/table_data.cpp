@@ -37,10 +37,11 @@ Result<BrdfData> fitDataOf(const SpecularTable& table, const DataOptions& option
         return Error{ErrorKind::Usage, "fit: a table of transmission; one of reflection is wanted"};
     }
     if (table.colour == TableColour::Xyz) {
-        return Error{ErrorKind::Usage, "fit: a table in XYZ; one of a single band is wanted"};
+        return Error{ErrorKind::Usage, "fit: a table in XYZ; one of the LED bands is wanted"};
     }
     DataMaker maker(options);
-    maker.data().bands = BandCount::One;
+    const bool three = table.colour == TableColour::LedBands;
+    maker.data().bands = three ? BandCount::Three : BandCount::One;
     maker.data().uKnown = false;
     for (std::size_t i = 0; i < table.incidenceDeg.size(); ++i) {
         maker.data().incidences.push_back(Radians::fromDegrees(table.incidenceDeg[i]));
@@ -49,13 +50,15 @@ Result<BrdfData> fitDataOf(const SpecularTable& table, const DataOptions& option
                 const TableNode node{.rotation = 0, .incidence = i, .azimuth = a, .radial = r};
                 if (table.repeatsDirection(node)) continue;
                 const LightView pair = table.pairAt(node);
-                if (!table.hasData(0, node) || !pair.in.aboveHorizon()) {
+                if (!table.hasData(node) || !pair.in.aboveHorizon()) {
                     maker.leaveOut();
                     continue;
                 }
                 FitRow& row = maker.add(pair);
                 row.group = static_cast<std::uint16_t>(i);
-                row.f[0] = table.planes[0].f[table.index(node)];
+                for (std::size_t plane = 0; plane < table.planes.size(); ++plane) {
+                    row.f[plane] = table.planes[plane].f[table.index(node)];
+                }
                 row.solidAngle = solidAngleOf(table, node);
             }
         }

@@ -1,6 +1,8 @@
 #include "proc/formats/exr_parts.h"
 
+#include <Imath/half.h>
 #include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFloatVectorAttribute.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
@@ -99,8 +101,12 @@ Imf::Header headerOf(const ExrPart& part, const Imath::Box2i& display) {
     header.compression() = Imf::ZIP_COMPRESSION;
     header.zipCompressionLevel() = 1;  // noise hardly gets smaller with more work
     for (const auto& [key, value] : part.text) header.insert(key, Imf::StringAttribute(value));
+    for (const auto& [key, value] : part.numbers) {
+        header.insert(key, Imf::FloatVectorAttribute(value));
+    }
     for (const auto& channel : part.floats) {
-        header.channels().insert(channel.first, Imf::Channel(Imf::FLOAT));
+        const Imf::PixelType type = part.half ? Imf::HALF : Imf::FLOAT;
+        header.channels().insert(channel.first, Imf::Channel(type));
     }
     for (const auto& channel : part.counts) {
         header.channels().insert(channel.first, Imf::Channel(Imf::UINT));
@@ -126,14 +132,40 @@ Imf::FrameBuffer bufferOf(const ExrPart& part) {
     return buffer;
 }
 
+/// The floats of a part as halves, and the library's view of them: it converts on reading only.
+struct Halves {
+    std::vector<std::vector<half>> channels;
+    Imf::FrameBuffer buffer;
+
+    explicit Halves(const ExrPart& part) {
+        for (const auto& [name, pixels] : part.floats) {
+            channels.emplace_back(pixels.begin(), pixels.end());
+            buffer.insert(name, sliceOf(Imf::HALF, channels.back().data(), part.size));
+        }
+        for (const auto& [name, pixels] : part.counts) {
+            buffer.insert(name, sliceOf(Imf::UINT, pixels.data(), part.size));
+        }
+    }
+};
+
+void writePart(Imf::OutputPart& out, const ExrPart& part) {
+    if (part.half) {
+        const Halves halves(part);
+        out.setFrameBuffer(halves.buffer);
+        out.writePixels(part.size.height);
+    } else {
+        out.setFrameBuffer(bufferOf(part));
+        out.writePixels(part.size.height);
+    }
+}
+
 std::string encodeAlone(const ExrPart& part, const Imath::Box2i& display, int threads) {
     const Imf::Header header = headerOf(part, display);
     MemoryOut out;
     {
         Imf::MultiPartOutputFile file(out, &header, 1, false, threads);
         Imf::OutputPart only(file, 0);
-        only.setFrameBuffer(bufferOf(part));
-        only.writePixels(part.size.height);
+        writePart(only, part);
     }
     return out.take();
 }
@@ -226,6 +258,8 @@ ExrPart emptyPart(const Imf::Header& header) {
     for (auto it = header.begin(); it != header.end(); ++it) {
         const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute());
         if (text != nullptr) part.text[it.name()] = text->value();
+        const auto* numbers = dynamic_cast<const Imf::FloatVectorAttribute*>(&it.attribute());
+        if (numbers != nullptr) part.numbers[it.name()] = numbers->value();
     }
     for (const char* ours : {"name", "type"}) part.text.erase(ours);  // of the container, not texts
     for (auto it = header.channels().begin(); it != header.channels().end(); ++it) {
@@ -237,6 +271,7 @@ ExrPart emptyPart(const Imf::Header& header) {
             part.counts[it.name()].resize(part.size.pixels());
         } else {
             part.floats[it.name()].resize(part.size.pixels());
+            part.half = channel.type == Imf::HALF;
         }
     }
     return part;

@@ -1,6 +1,7 @@
 #pragma once
 // The only door to OpenEXR: a file as plain parts, each with text attributes and float or unsigned
-// 32-bit channels of one size; multi-part, scan lines, ZIP. Bytes in memory, so that a reader sees
+// 32-bit channels of one size, floats as halves where asked; one part or several, scan lines, ZIP.
+// Bytes in memory, so that a reader sees
 // the whole file and its length before anything else.
 //
 // Decoding never trusts the bytes: attribute sizes, picture sizes, part count and compression are
@@ -24,6 +25,9 @@ struct ExrPart {
     std::string name;
     Size size;
     std::map<std::string, std::string> text;
+    std::map<std::string, std::vector<float>> numbers{};  ///< attributes of several floats
+    /// The floats are stored in 16 bits, rounded to nearest; decoding widens them exactly.
+    bool half = false;
     std::map<std::string, std::vector<float>> floats;          ///< row-major, size.pixels() long
     std::map<std::string, std::vector<std::uint32_t>> counts;  ///< likewise
 };

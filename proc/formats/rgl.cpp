@@ -5,6 +5,7 @@
 #include <cstring>
 #include <string>
 
+#include "proc/formats/metadata_text.h"
 #include "proc/formats/shown.h"
 #include "proc/formats/tensor_file.h"
 #include "proc/table/tensor_bsdf.h"
@@ -23,16 +24,6 @@ constexpr std::string_view kKnown[] = {"description",
                                        "rgb",
                                        "spectra",
                                        "wavelengths"};
-
-std::vector<std::string> linesOf(std::string_view text) {
-    std::vector<std::string> lines;
-    while (!text.empty()) {
-        const std::size_t end = std::min(text.find('\n'), text.size());
-        lines.emplace_back(text.substr(0, end));
-        text.remove_prefix(std::min(end + 1, text.size()));
-    }
-    return lines;
-}
 
 /// Takes the fields of one file. The first complaint stops it: each step answers false then.
 class Reader {
@@ -76,7 +67,9 @@ private:
 
     bool floats(const TensorField& field, std::vector<float>& into) {
         into.resize(field.data.size() / sizeof(float));
-        std::memcpy(into.data(), field.data.data(), into.size() * sizeof(float));
+        if (!into.empty()) {
+            std::memcpy(into.data(), field.data.data(), into.size() * sizeof(float));
+        }
         // A sum of the products with 0 is 0 but for infinities and NaN; a loop without a branch.
         float odd = 0;
         for (const float value : into) odd += value * 0;
@@ -98,7 +91,12 @@ private:
             text != nullptr ? take("jacobian", TensorType::U8, 1) : nullptr;
         if (jacobian == nullptr) return false;
         if (jacobian->data.size() != 1) return fail("jacobian", "wanted one value");
-        read_.about = metadataOfLines(linesOf(text->data));
+        auto about = metadataOfText(text->data);
+        if (!about) {
+            return fail("description",
+                        "more than " + std::to_string(kMostMetadataLines) + " lines");
+        }
+        read_.about = std::move(*about);
         read_.content.jacobian = jacobian->data[0] != 0;
         return axis("theta_i", read_.content.thetaIn) && axis("phi_i", read_.content.phiIn);
     }
@@ -241,10 +239,7 @@ Result<Written> writeRgl(const TensorTable& table, const Metadata& about) {
     if (!bands && !areWavelengths(table.channels)) {
         return Error{ErrorKind::Usage, "rgl: wanted channels R, G, B, or ascending wavelengths"};
     }
-    std::string description;
-    for (const std::string& line : metadataLines(about)) {
-        description += (description.empty() ? "" : "\n") + line;
-    }
+    const std::string description = metadataText(about);
     std::vector<float> wavelengths;
     for (const Channel& channel : table.channels) {
         wavelengths.push_back(static_cast<float>(channel.nanometres.value_or(0)));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -31,8 +32,6 @@ constexpr std::array<std::string_view, 3> kXyzSections{
 std::string_view sectionName(TableColour colour, std::size_t plane) {
     return colour == TableColour::Xyz ? kXyzSections[plane] : std::string_view("Monochrome");
 }
-
-std::size_t planeCount(TableColour colour) { return colour == TableColour::Xyz ? 3 : 1; }
 
 /// a * b, or the largest number where that does not fit.
 std::size_t productOrMost(std::size_t a, std::size_t b) {
@@ -347,6 +346,7 @@ Result<SpecularTable> readZemax(const std::filesystem::path& path) {
 }
 
 Written writeZemax(const SpecularTable& table) {
+    assert(table.colour != TableColour::LedBands);  // three files, or a stated conversion to XYZ
     Written out;
     appendComments(out.bytes, table.comments);
     out.bytes += "Source  Measured\nSymmetry  " + std::string(spelling(table.symmetry));

@@ -22,7 +22,8 @@ namespace gonio::proc {
 [[nodiscard]] Result<SpecularTable> parseZemax(std::string_view text, std::string_view name);
 [[nodiscard]] Result<SpecularTable> readZemax(const std::filesystem::path& path);
 
-/// The planes must have the sizes of the axes. Shortest digits that read back to the same double,
+/// Not of LedBands, which the format has no place for. The planes must have the sizes of the
+/// axes. Shortest digits that read back to the same double,
 /// so that write-read-write gives the same bytes. What is not finite is written as 0, as the format
 /// wants, and counted.
 [[nodiscard]] Written writeZemax(const SpecularTable& table);

@@ -78,8 +78,9 @@ Result<Scattered> scatteredOf(const SampleSet& sample,
 
 Result<Scattered> scatteredOf(const SpecularTable& table) {
     if (table.kind == ScatterKind::Btdf || table.colour == TableColour::Xyz) {
-        return Error{ErrorKind::Usage,
-                     "scattered samples: a table of f in reflection and of one band is wanted"};
+        return Error{
+            ErrorKind::Usage,
+            "scattered samples: a table of f in reflection and of the LED bands is wanted"};
     }
     std::vector<ScatteredSample> samples;
     std::size_t leftOut = 0;
@@ -88,19 +89,20 @@ Result<Scattered> scatteredOf(const SpecularTable& table) {
             for (n.azimuth = 0; n.azimuth < table.azimuthDeg.size(); ++n.azimuth) {
                 for (n.radial = 0; n.radial < table.radialDeg.size(); ++n.radial) {
                     if (!table.canHoldData(n) || table.repeatsDirection(n)) continue;
-                    if (!table.hasData(0, n)) {
+                    if (!table.hasData(n)) {
                         ++leftOut;
                         continue;
                     }
                     samples.push_back({.pair = table.pairAt(n),
-                                       .f = LedBands::all(table.planes[0].f[table.index(n)]),
+                                       .f = table.bandsAt(n),
                                        .uRandom = {},
                                        .uSystematic = {}});
                 }
             }
         }
     }
-    return scatteredFrom(samples, ScatteredSet(symmetryOf(table), BandCount::One), leftOut);
+    const auto bands = table.planes.size() == 3 ? BandCount::Three : BandCount::One;
+    return scatteredFrom(samples, ScatteredSet(symmetryOf(table), bands), leftOut);
 }
 
 }  // namespace gonio::proc

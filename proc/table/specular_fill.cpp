@@ -94,6 +94,22 @@ FilledTable fillTable(const Scatterer& from, const SpecularGrid& grid, Band band
     return filled;
 }
 
+FilledTable fillBands(const Scatterer& from, const SpecularGrid& grid) {
+    FilledTable filled = fillTable(from, grid, Band::R);
+    if (from.bandCount() == BandCount::One) return filled;
+    filled.table.colour = TableColour::LedBands;
+    for (const Band band : {Band::G, Band::B}) {
+        FilledTable next = fillTable(from, grid, band);
+        filled.table.planes.push_back(std::move(next.table.planes.front()));
+        filled.nodes += next.nodes;
+        filled.unanswered += next.unanswered;
+        filled.exactZero += next.exactZero;
+        filled.uncertain += next.uncertain;
+        filled.extrapolated += next.extrapolated;
+    }
+    return filled;
+}
+
 double totalScatter(const Scatterer& from, const Direction& wi, Band band) {
     constexpr std::size_t kRings = 180;
     constexpr int kSectors = 360;

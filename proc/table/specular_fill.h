@@ -30,6 +30,10 @@ struct FilledTable {
 
 [[nodiscard]] FilledTable fillTable(const Scatterer& from, const SpecularGrid& grid, Band band);
 
+/// R, G and B in one table, whose counts are those of all three; of a scatterer of one band a
+/// monochrome table.
+[[nodiscard]] FilledTable fillBands(const Scatterer& from, const SpecularGrid& grid);
+
 /// Integral of f cos(theta_o) over the hemisphere for the light at wi.
 [[nodiscard]] double totalScatter(const Scatterer& from, const Direction& wi, Band band);
 

@@ -11,6 +11,7 @@ namespace gonio::proc {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t kPole = std::numeric_limits<std::size_t>::max();  ///< of radials
 
 /// (1 - t) low + t high; a node of no weight is not asked, so that its NaN cannot answer.
 template <class ValueAt>
@@ -19,11 +20,37 @@ double between(const AxisPlace& place, const ValueAt& valueAt) {
     return place.atNode() ? low : (1 - place.t) * low + place.t * valueAt(place.high);
 }
 
+/// Whether an end of an axis is the centre of its cell, so that the axis goes on to the cell's
+/// edge.
+bool endsInACell(double distance, double step) { return distance > 0 && distance < 0.75 * step; }
+
+/// Whether the first radial is the centre of a cell that begins at the pole.
+bool hasOpenPole(const SpecularTable& table) {
+    const std::vector<double>& radials = table.radialDeg;
+    return radials.size() > 1 && endsInACell(radials[0], radials[1] - radials[0]);
+}
+
+/// A radial between the pole, as node `high` of the place, and the first node, as `low`.
+std::optional<AxisPlace> placeRadial(const SpecularTable& table, double radialDeg) {
+    if (const auto place = placeOn(table.radialDeg, radialDeg)) return place;
+    if (!hasOpenPole(table) || radialDeg > table.radialDeg.front()) return std::nullopt;
+    return AxisPlace{0, kPole, 1 - radialDeg / table.radialDeg.front()};
+}
+
 std::optional<AxisPlace> placeAzimuth(const SpecularTable& table, double azimuthDeg) {
     if (table.symmetry != TableSymmetry::PlaneSymmetrical) {
         return placeOnCircle(table.azimuthDeg, azimuthDeg);
     }
-    return placeOn(table.azimuthDeg, azimuthDeg > 180 ? 360 - azimuthDeg : azimuthDeg);
+    const std::vector<double>& axis = table.azimuthDeg;
+    double at = azimuthDeg > 180 ? 360 - azimuthDeg : azimuthDeg;
+    // Between the mirror plane and the centre of the cell beside it both sides are the same.
+    if (axis.size() > 1 && at < axis[0] && endsInACell(axis[0], axis[1] - axis[0])) at = axis[0];
+    const std::size_t last = axis.size() - 1;
+    if (axis.size() > 1 && at > axis[last] &&
+        endsInACell(180 - axis[last], axis[last] - axis[last - 1])) {
+        at = axis[last];
+    }
+    return placeOn(axis, at);
 }
 
 /// What is wrong with the table; empty when it can be looked up.
@@ -91,12 +118,21 @@ std::optional<SpecularLookup::TablePlace> SpecularLookup::placeIn(const Specular
     const double incidenceDeg = std::max(pair.in.theta().degrees(), table.incidenceDeg.front());
     const auto incidence = placeOn(table.incidenceDeg, incidenceDeg);
     const auto azimuth = placeAzimuth(table, at.azimuth.degrees());
-    const auto radial = placeOn(table.radialDeg, at.radial.degrees());
+    const auto radial = placeRadial(table, at.radial.degrees());
     const auto rotation = table.rotationDeg.size() == 1
                               ? AxisPlace{}
                               : placeOnCircle(table.rotationDeg, -pair.in.phi().degrees());
     if (!incidence || !azimuth || !radial || !rotation) return std::nullopt;
     return TablePlace{*rotation, *incidence, *azimuth, *radial};
+}
+
+double SpecularLookup::poleAt(std::size_t plane, TableNode node) const {
+    double sum = 0;
+    node.radial = 0;
+    for (node.azimuth = 0; node.azimuth < table_.azimuthDeg.size(); ++node.azimuth) {
+        sum += f_[plane * table_.nodeCount() + table_.index(node)];
+    }
+    return sum / static_cast<double>(table_.azimuthDeg.size());
 }
 
 double SpecularLookup::valueAt(std::size_t plane, const TablePlace& place) const {
@@ -105,7 +141,8 @@ double SpecularLookup::valueAt(std::size_t plane, const TablePlace& place) const
         return between(place.incidence, [&](std::size_t incidence) {
             return between(place.azimuth, [&](std::size_t azimuth) {
                 return between(place.radial, [&](std::size_t radial) {
-                    return f_[first + table_.index({rotation, incidence, azimuth, radial})];
+                    const TableNode node{rotation, incidence, azimuth, radial};
+                    return radial == kPole ? poleAt(plane, node) : f_[first + table_.index(node)];
                 });
             });
         });

@@ -7,7 +7,9 @@
 // needed has no data, and outside the axes: no answer, without flags. At and below the horizon: no
 // answer, flag below_horizon; a table of transmission answers below it, and not above. Several
 // rotations: linear between them at the light's azimuth; one rotation: isotropic. A
-// plane-symmetrical table is mirrored.
+// plane-symmetrical table is mirrored. Where the axes are the centres of cells (a first radial
+// within three quarters of a step of 0; azimuths likewise), the mean of the first ring stands at
+// the pole, and azimuths go on to the mirror plane.
 //
 // At a node: flag and source `measured`; between nodes `interpolated`. Monochrome: bandCount One,
 // the same f for the three bands. R, G, B: an answer has those that have one.
@@ -39,6 +41,8 @@ private:
     explicit SpecularLookup(SpecularTable table);
     static std::optional<TablePlace> placeIn(const SpecularTable& table, const LightView& pair);
     [[nodiscard]] double valueAt(std::size_t plane, const TablePlace& place) const;
+    /// The mean of the ring about the mirror direction.
+    [[nodiscard]] double poleAt(std::size_t plane, TableNode node) const;
 
     SpecularTable table_;
     std::size_t planes_ = 1;

@@ -1,5 +1,6 @@
 #include "proc/table/specular_table.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "proc/core/coordinates.h"
@@ -45,6 +46,21 @@ bool SpecularTable::canHoldData(TableNode node) const {
 bool SpecularTable::hasData(std::size_t plane, TableNode node) const {
     const double f = planes[plane].f[index(node)];
     return f != 0 && !std::isnan(f) && canHoldData(node);
+}
+
+bool SpecularTable::hasData(TableNode node) const {
+    for (std::size_t plane = 0; plane < planes.size(); ++plane) {
+        if (!hasData(plane, node)) return false;
+    }
+    return !planes.empty();
+}
+
+LedBands SpecularTable::bandsAt(TableNode node) const {
+    LedBands f;
+    for (std::size_t band = 0; band < 3; ++band) {
+        f.value[band] = planes[std::min(band, planes.size() - 1)].f[index(node)];
+    }
+    return f;
 }
 
 bool SpecularTable::repeatsDirection(TableNode node) const {

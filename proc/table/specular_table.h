@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "proc/core/bands.h"
 #include "proc/core/direction.h"
 
 namespace gonio::proc {
@@ -31,6 +32,9 @@ enum class TableColour {
     Xyz,
     LedBands  ///< R, G, B: no Zemax file
 };
+[[nodiscard]] constexpr std::size_t planeCount(TableColour colour) {
+    return colour == TableColour::Monochrome ? 1 : 3;
+}
 
 /// One node: positions on the four axes.
 struct TableNode {
@@ -64,6 +68,10 @@ struct SpecularTable {
     /// Above the horizon by more than rounding; for BTDF the other side of the surface counts.
     [[nodiscard]] bool canHoldData(TableNode node) const;
     [[nodiscard]] bool hasData(std::size_t plane, TableNode node) const;
+    /// In every plane.
+    [[nodiscard]] bool hasData(TableNode node) const;
+    /// f of R, G, B; of a monochrome table the same thrice. Of an XYZ table it is none of them.
+    [[nodiscard]] LedBands bandsAt(TableNode node) const;
     /// The node's direction stands in the table a second time: the pole of an incidence at another
     /// azimuth than the first, or the azimuth of the first one after a full turn.
     [[nodiscard]] bool repeatsDirection(TableNode node) const;

@@ -287,5 +287,27 @@ TEST(ExrParts, RefusesMorePixelsThanItWasToldToRead) {
                         {"exr: ", std::to_string(bytes) + " bytes of pixels"}));
 }
 
+TEST(ExrParts, StoreHalvesAndNumbersInASinglePart) {
+    ExrPart part;
+    part.size = {2, 1};
+    part.floats["R"] = {0.1F, 65504.0F};
+    part.floats["G"] = {1.0F, -0.25F};
+    part.numbers["angles"] = {0, 0.25F, -1e30F};
+    part.numbers["none"] = {};
+    part.half = true;
+    const auto bytes = encodeExr(std::vector{part});
+    ASSERT_TRUE(bytes);
+    EXPECT_EQ((*bytes)[5] & 0x10, 0);  // of one part, as plain readers want it
+    const auto back = decodeExr(*bytes, {.largest = {2, 1}, .parts = 1});
+    ASSERT_TRUE(back) << back.error().message;
+    EXPECT_TRUE(back->front().half);
+    EXPECT_EQ(back->front().numbers, part.numbers);
+    EXPECT_EQ(back->front().floats.at("G"), part.floats["G"]);
+    // Nearest of 11 significant bits.
+    EXPECT_NEAR(back->front().floats.at("R")[0], 0.1F, 0.1F / 2048);
+    EXPECT_EQ(back->front().floats.at("R")[1], 65504.0F);
+    EXPECT_EQ(*encodeExr(*back), *bytes);
+}
+
 }  // namespace
 }  // namespace gonio::proc

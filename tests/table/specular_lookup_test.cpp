@@ -202,5 +202,76 @@ TEST(SpecularLookup, AnswersBandByBandWhereThereAreThree) {
     EXPECT_TRUE(answer.flags.has(Flag::Measured));
 }
 
+/// Axes at the centres of cells, smooth f = 1 + x / 10 + y / 20 about the mirror direction.
+SpecularTable centredTable(TableSymmetry symmetry) {
+    SpecularTable table;
+    table.symmetry = symmetry;
+    table.colour = TableColour::LedBands;
+    table.incidenceDeg = {0, 40};
+    const bool half = symmetry == TableSymmetry::PlaneSymmetrical;
+    for (int i = 0; i < (half ? 18 : 36); ++i) table.azimuthDeg.push_back(10 * i + 5);
+    for (int j = 0; j < 36; ++j) table.radialDeg.push_back(5 * j + 2.5);
+    TablePlane plane{.f = std::vector<double>(table.nodeCount()), .tis = {0, 0}};
+    for (TableNode n; n.incidence < 2; ++n.incidence) {
+        for (n.azimuth = 0; n.azimuth < table.azimuthDeg.size(); ++n.azimuth) {
+            for (n.radial = 0; n.radial < table.radialDeg.size(); ++n.radial) {
+                const Radians a = Radians::fromDegrees(table.azimuthDeg[n.azimuth]);
+                const double r = table.radialDeg[n.radial];
+                plane.f[table.index(n)] = 3 + r * cos(a) / 100 + (half ? 0 : r * sin(a) / 50);
+            }
+        }
+    }
+    table.planes = {plane, plane, plane};
+    for (double& f : table.planes[2].f) f *= 2;
+    return table;
+}
+
+TEST(SpecularLookup, GoesOverThePoleOfCellCentres) {
+    const SpecularLookup at = lookup(centredTable(TableSymmetry::Asymmetrical));
+    for (const double azimuth : {0.0, 45.0, 123.0, 359.0}) {
+        EXPECT_NEAR(at.answer(pairAt(40, azimuth, 0)).f[Band::R], 3, 1e-9);
+        const Radians a = Radians::fromDegrees(azimuth);
+        for (const double radial : {0.01, 1.0, 2.4}) {
+            const double f = 3 + radial * cos(a) / 100 + radial * sin(a) / 50;
+            // Linear between azimuths 10 degrees apart: 0.4 % of the slope.
+            EXPECT_NEAR(at.answer(pairAt(40, azimuth, radial)).f[Band::R], f, 2e-4);
+        }
+    }
+    EXPECT_TRUE(at.answer(pairAt(40, 5, 1)).flags.has(Flag::Interpolated));
+}
+
+TEST(SpecularLookup, HasNoAnswerAtAPoleWhoseRingIsNotWhole) {
+    SpecularTable table = centredTable(TableSymmetry::Asymmetrical);
+    table.planes[1].f[table.index({0, 1, 20, 0})] = 0;
+    const SpecularLookup at = lookup(table);
+    EXPECT_TRUE(std::isnan(at.answer(pairAt(40, 5, 1)).f[Band::G]));
+    EXPECT_FALSE(std::isnan(at.answer(pairAt(40, 5, 1)).f[Band::R]));
+    EXPECT_TRUE(at.answer(pairAt(40, 5, 2.5)).present());
+}
+
+TEST(SpecularLookup, GoesOnToTheMirrorPlaneFromCellCentres) {
+    const SpecularLookup at = lookup(centredTable(TableSymmetry::PlaneSymmetrical));
+    const double beside = at.answer(pairAt(40, 5, 20)).f[Band::R];
+    for (const double azimuth : {0.0, 2.0, 355.0, 359.5}) {
+        EXPECT_NEAR(at.answer(pairAt(40, azimuth, 20)).f[Band::R], beside, 1e-12) << azimuth;
+    }
+    const double behind = at.answer(pairAt(40, 175, 20)).f[Band::R];
+    EXPECT_NEAR(at.answer(pairAt(40, 180, 20)).f[Band::R], behind, 1e-12);
+}
+
+TEST(SpecularLookup, KeepsTheGapBeforeAFirstRadialOfAWholeStep) {
+    SpecularTable table = tableOf(TableSymmetry::Asymmetrical, linear);
+    table.radialDeg.erase(table.radialDeg.begin());  // 10, 20, ...
+    TablePlane& plane = table.planes[0];
+    plane.f.assign(table.nodeCount(), 1);
+    EXPECT_FALSE(lookup(table).answer(pairAt(30, 0, 5)).present());
+}
+
+TEST(SpecularLookup, RefusesPlanesThatAreNotItsColours) {
+    SpecularTable table = centredTable(TableSymmetry::Asymmetrical);
+    table.planes.pop_back();
+    EXPECT_FALSE(SpecularLookup::over(table));
+}
+
 }  // namespace
 }  // namespace gonio::proc
