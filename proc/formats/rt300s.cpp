@@ -51,7 +51,7 @@ public:
             const std::string_view content = trimmed(*line);
             if (content.empty()) continue;
             if (content.front() == '#') {
-                comments_.emplace_back(trimmed(content.substr(1)));
+                if (!keepComment(trimmed(content.substr(1)))) return *error_;
                 continue;
             }
             fields_ = fieldsBetween(',', content, std::move(fields_));
@@ -67,6 +67,10 @@ private:
                        "rt300s: " + std::string(name_) + ": line " +
                            std::to_string(lines_.number()) + ": " + what};
         return false;
+    }
+    bool keepComment(std::string_view line) {
+        return comments_.add(line) ||
+               fail("more than " + std::to_string(CommentLines::kMost) + " comments");
     }
     bool header() {
         headerIsRead_ = true;
@@ -113,7 +117,7 @@ private:
             return fail("two readings at azimuth " + shortest((*twice)[0]) + ", incidence " +
                         shortest((*twice)[1]) + ", receive " + shortest((*twice)[2]));
         }
-        read_.about = metadataOfLines(comments_);
+        read_.about = metadataOfLines(comments_.all());
         read_.warnings = warningsOf(readings);
         return true;
     }
@@ -123,7 +127,7 @@ private:
     FileRead<Rt300sScan> read_;
     std::vector<std::string_view> fields_;
     std::array<std::size_t, 4> places_{};
-    std::vector<std::string> comments_;
+    CommentLines comments_;
     bool headerIsRead_ = false;
     std::optional<Error> error_;
 };
