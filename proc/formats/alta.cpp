@@ -121,6 +121,10 @@ private:
                            ": " + what};
         return false;
     }
+    bool keepComment(std::string_view line) {
+        return comments_.add(line) ||
+               fail("more than " + std::to_string(CommentLines::kMost) + " comments");
+    }
 
     bool headerLine(std::string_view line) {
         const bool free = line.starts_with(' ') || line.empty();  // "# text" is a comment
@@ -128,8 +132,7 @@ private:
         const std::string_view keyword = line.substr(0, size);
         const std::string_view value = trimmed(line.substr(size));
         if (free) {
-            comments_.emplace_back(line.empty() ? line : line.substr(1));
-            return true;
+            return keepComment(line.empty() ? line : line.substr(1));
         }
         if (columns_ > 0) return fail("the keyword " + shown(keyword) + " among the rows");
         if (!keys_.insert(lower(keyword)).second) return fail(shown(keyword) + " is given twice");
@@ -228,7 +231,7 @@ private:
 
     bool end() {
         if (rows().pairs.empty()) return fail("no row of numbers");
-        Metadata told = metadataOfLines(comments_);
+        Metadata told = metadataOfLines(comments_.all());
         for (auto& [name, value] : told.values) read_.about.set(name, std::move(value));
         read_.about.comments = std::move(told.comments);
         takeRowNotes(read_.about, rows());
@@ -256,7 +259,7 @@ private:
     std::string_view name_;
     FileRead<BrdfRows> read_;
     std::set<std::string> keys_;
-    std::vector<std::string> comments_;
+    CommentLines comments_;
     const InputForm* input_ = nullptr;
     const OutputForm* output_ = nullptr;
     std::size_t inputs_ = 0, outputs_ = 0, columns_ = 0;

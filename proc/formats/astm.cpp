@@ -69,6 +69,10 @@ private:
                            ": " + what};
         return false;
     }
+    bool keepComment(std::string_view line) {
+        return comments_.add(line) ||
+               fail("more than " + std::to_string(CommentLines::kMost) + " comments");
+    }
 
     bool header() {
         while (const auto line = lines_.next()) {
@@ -80,7 +84,7 @@ private:
             const std::string known = lower(keyword);
             if (known == "vars") return variables(value);
             if (known == "comment") {
-                comments_.emplace_back(value);
+                if (!keepComment(value)) return false;
                 continue;
             }
             if (!keys_.insert(known).second) return fail(shown(keyword) + " is given twice");
@@ -172,7 +176,7 @@ private:
                         std::to_string(*promised_));
         }
         if (count == 0) return fail("no row of values");
-        Metadata told = metadataOfLines(comments_);
+        Metadata told = metadataOfLines(comments_.all());
         for (auto& [name, value] : told.values) read_.about.set(name, std::move(value));
         read_.about.comments = std::move(told.comments);
         takeRowNotes(read_.about, rows());
@@ -187,7 +191,7 @@ private:
     std::string_view name_;
     FileRead<BrdfRows> read_;
     std::set<std::string> keys_;
-    std::vector<std::string> comments_;
+    CommentLines comments_;
     std::optional<std::int64_t> promised_;
     std::size_t columns_ = 0;
     bool threeAngles_ = false;

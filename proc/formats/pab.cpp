@@ -46,14 +46,17 @@ private:
                            ": " + what};
         return false;
     }
+    bool keepComment(std::string_view line) {
+        return comments_.add(line) ||
+               fail("more than " + std::to_string(CommentLines::kMost) + " comments");
+    }
 
     bool headerLine(std::string_view line) {
         const std::size_t size = std::min(line.find_first_of(" \t"), line.size());
         std::string_view keyword = line.substr(0, size);
         const std::string_view value = trimmed(line.substr(size));
         if (keyword.empty()) {
-            comments_.emplace_back(line.empty() ? line : line.substr(1));
-            return true;
+            return keepComment(line.empty() ? line : line.substr(1));
         }
         if (keyword.ends_with(':')) keyword.remove_suffix(1);
         const std::string known = lower(keyword);
@@ -67,8 +70,7 @@ private:
                                                          "sample_name"};
         if (std::find(kKnown.begin(), kKnown.end(), known) == kKnown.end()) {
             if (known == "upphi") return angle(keyword, value, upPhi_);
-            comments_.emplace_back(line);
-            return true;
+            return keepComment(line);
         }
         if (!keys_.insert(known).second) return fail("#" + known + " is given twice");
         if (!rows().channels.empty()) return fail("#" + known + " among the rows");
@@ -181,7 +183,7 @@ private:
             return fail(std::to_string(count) + " rows, #datapoints_in_file promised " +
                         std::to_string(*promised_));
         }
-        Metadata told = metadataOfLines(comments_);
+        Metadata told = metadataOfLines(comments_.all());
         for (auto& [name, value] : told.values) read_.about.set(name, std::move(value));
         read_.about.comments = std::move(told.comments);
         if (upPhi_) read_.about.set(std::string(kForeign) + "upphi", shortest(*upPhi_));
@@ -201,7 +203,7 @@ private:
     std::string_view name_;
     FileRead<BrdfRows> read_;
     std::set<std::string> keys_;
-    std::vector<std::string> comments_;
+    CommentLines comments_;
     std::optional<double> theta_, phi_, upPhi_;
     std::optional<std::int64_t> promised_;
     bool formatIsSaid_ = false, cosine_ = false, transmission_ = false, xyz_ = false;

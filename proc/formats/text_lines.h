@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -42,6 +43,24 @@ namespace gonio::proc {
     }
     return reuse;
 }
+
+/// The comments of a file, as many as are kept: a million empty ones are no reason to ask for more
+/// memory than the file has.
+class CommentLines {
+public:
+    static constexpr std::size_t kMost = 10'000;
+
+    /// False: one too many.
+    bool add(std::string_view line) {
+        if (lines_.size() == kMost) return false;
+        lines_.emplace_back(line);
+        return true;
+    }
+    [[nodiscard]] const std::vector<std::string>& all() const { return lines_; }
+
+private:
+    std::vector<std::string> lines_;
+};
 
 class TextLines {
 public:

@@ -17,6 +17,7 @@
 #include "proc/formats/pab.h"
 #include "proc/formats/points_csv.h"
 #include "proc/formats/rgl.h"
+#include "proc/formats/rt300s_brdf.h"
 #include "proc/formats/scattered_csv.h"
 #include "proc/formats/sniff.h"
 #include "proc/formats/speos.h"
@@ -125,6 +126,14 @@ Complaint exrAtlas(Bytes bytes) {
     });
 }
 Complaint klems(Bytes bytes) { return only(bytes, proc::parseKlems); }
+/// Both kinds of file that the format has.
+Complaint rt300s(Bytes bytes) {
+    if (!proc::isJdv(bytes)) return only(bytes, proc::parseRt300sCsv);
+    const auto blocks = proc::parseJdv(bytes, "in");
+    if (!blocks) return blocks.error();
+    (void)proc::tableOfJdv(blocks->content);
+    return std::nullopt;
+}
 Complaint stil(Bytes bytes) { return only(bytes, proc::parseStilText); }
 Complaint points(Bytes bytes) { return only(bytes, proc::parsePoints); }
 Complaint sniff(Bytes bytes) {
@@ -152,6 +161,7 @@ constexpr std::array kReaders{
     Reader{"csv", true, soundCsv, csv},
     Reader{"exr-tiles", false, soundExrTiles, exrTiles},
     Reader{"exr-atlas", false, soundExrAtlas, exrAtlas},
+    Reader{"rt300s", true, soundRt300s, rt300s},
     Reader{"klems", true, soundKlems, klems},
     Reader{"stil", true, soundStil, stil},
     Reader{"points", true, soundPoints, points},
