@@ -275,6 +275,22 @@ TEST(ExrTiles, RefuseTablesThatTheyCannotHold) {
     EXPECT_TRUE(refused([](SpecularTable& t) { t.planes[0].f.pop_back(); }));
 }
 
+TEST(ExrTiles, ReadBackAPictureThatShrinksToNothing) {
+    SpecularTable table;
+    const SpecularGrid grid = exrTileGrid({0, 10, 20, 30, 40, 50, 60, 70}, {720, 360});
+    table.symmetry = grid.symmetry;
+    table.incidenceDeg = grid.incidenceDeg;
+    table.azimuthDeg = grid.azimuthDeg;
+    table.radialDeg = grid.radialDeg;
+    table.colour = TableColour::LedBands;
+    table.planes.assign(
+        3,
+        {.f = std::vector<double>(table.nodeCount(), 0.25), .tis = std::vector<double>(8, 0.75)});
+    const auto written = encodeExrTiles(table, {});
+    EXPECT_GT(written->bytes.size(), table.nodeCount() * 3 / 6);
+    EXPECT_EQ(encodeExrTiles(decoded(written).content, {})->bytes, written->bytes);
+}
+
 TEST(ExrAtlas, HoldsSamplesInTheirOrder) {
     const char* specs[] = {"lambert,albedo=0.3/0.2/0.1",
                            "ggx,alpha=0.2,f0=0.5",
