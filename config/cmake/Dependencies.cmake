@@ -7,6 +7,7 @@ find_path(NANOFLANN_INCLUDE nanoflann.hpp REQUIRED)  # headers only
 find_package(OpenEXR REQUIRED)
 find_package(PNG REQUIRED)
 find_package(nlohmann_json REQUIRED)
+find_package(pugixml REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(tomlplusplus REQUIRED IMPORTED_TARGET tomlplusplus)

@@ -19,13 +19,6 @@ constexpr std::size_t kMostComments = 10'000;
 constexpr std::array<std::string_view, 4> kAngles{"theta_i", "phi_i", "theta_o", "phi_o"};
 constexpr std::array<std::string_view, 6> kVectors{"wi_x", "wi_y", "wi_z", "wo_x", "wo_y", "wo_z"};
 
-std::string_view trimmed(std::string_view field) {
-    const auto space = [](char c) { return c == ' ' || c == '\t'; };
-    while (!field.empty() && space(field.front())) field.remove_prefix(1);
-    while (!field.empty() && space(field.back())) field.remove_suffix(1);
-    return field;
-}
-
 std::string_view unquoted(std::string_view field) {
     field = trimmed(field);
     if (field.size() >= 2 && field.front() == '"' && field.back() == '"') {
@@ -80,8 +73,6 @@ std::string csvName(const std::string& name) {
 }
 
 bool CsvRows::next() {
-    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-    if (at_ == 0 && text_.starts_with(kByteOrderMark)) at_ = kByteOrderMark.size();
     while (!error_) {
         const auto line = nextLine();
         if (!line) break;
@@ -97,20 +88,15 @@ bool CsvRows::next() {
 }
 
 bool CsvRows::fail(const std::string& what) {
-    error_ =
-        Error{ErrorKind::File,
-              "csv: " + std::string(name_) + ": line " + std::to_string(lineNumber_) + ": " + what};
+    error_ = Error{
+        ErrorKind::File,
+        "csv: " + std::string(name_) + ": line " + std::to_string(lines_.number()) + ": " + what};
     return false;
 }
 
-/// The next line that says something. A line ends in LF, CR LF or a bare CR.
 std::optional<std::string_view> CsvRows::nextLine() {
-    while (at_ < text_.size()) {
-        const std::size_t end = std::min(text_.find_first_of("\r\n", at_), text_.size());
-        const std::string_view line = text_.substr(at_, end - at_);
-        at_ = end + (text_.substr(end).starts_with("\r\n") ? 2 : 1);
-        ++lineNumber_;
-        std::string_view content = trimmed(line);
+    while (const auto line = lines_.next()) {
+        std::string_view content = trimmed(*line);
         if (content.empty()) continue;
         if (content.front() != '#') return line;
         content.remove_prefix(1);

@@ -13,6 +13,7 @@
 
 #include "proc/core/direction.h"
 #include "proc/core/result.h"
+#include "proc/formats/text_lines.h"
 
 namespace gonio::proc {
 
@@ -27,7 +28,7 @@ namespace gonio::proc {
 class CsvRows {
 public:
     /// `name` stands in errors: "csv: NAME: line 3: theta_i: 'banana', wanted a number".
-    CsvRows(std::string_view text, std::string_view name) : text_(text), name_(name) {}
+    CsvRows(std::string_view text, std::string_view name) : lines_(text), name_(name) {}
 
     /// On to the next row, the header before the first one; false at the end, and where there is an
     /// error.
@@ -50,6 +51,7 @@ public:
     [[nodiscard]] std::optional<double> number(std::size_t column);
 
 private:
+    /// The next line that says something.
     std::optional<std::string_view> nextLine();
     bool quotesEnd(std::string_view line);
     bool header(std::string_view line);
@@ -57,10 +59,8 @@ private:
     bool fromAngles();
     bool fromVectors();
 
-    std::string_view text_;
+    TextLines lines_;
     std::string_view name_;
-    std::size_t at_ = 0;
-    int lineNumber_ = 0;
     std::vector<std::string> columns_;
     std::vector<std::size_t> places_;  ///< columns of the directions, in the order of their names
     bool vectors_ = false;

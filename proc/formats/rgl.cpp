@@ -67,7 +67,9 @@ private:
 
     bool floats(const TensorField& field, std::vector<float>& into) {
         into.resize(field.data.size() / sizeof(float));
-        std::memcpy(into.data(), field.data.data(), into.size() * sizeof(float));
+        if (!into.empty()) {
+            std::memcpy(into.data(), field.data.data(), into.size() * sizeof(float));
+        }
         // A sum of the products with 0 is 0 but for infinities and NaN; a loop without a branch.
         float odd = 0;
         for (const float value : into) odd += value * 0;

@@ -9,12 +9,11 @@
 #include "proc/core/number_text.h"
 #include "proc/formats/csv_rows.h"
 #include "proc/formats/file_degrees.h"
+#include "proc/formats/row_notes.h"
 #include "proc/formats/shown.h"
 
 namespace gonio::proc {
 namespace {
-
-constexpr std::string_view kSymmetry = "symmetry";
 
 /// What stands behind f_: empty for a channel without name and wavelength.
 std::string suffixOf(const Channel& channel) {
@@ -123,7 +122,6 @@ private:
             const auto f = csv_.number(columns.f);
             if (!f) return false;
             rows().f.push_back(*f);
-            if (*f < 0) ++negative_;
             if (uncertain_ && !addUncertainty(columns)) return false;
             if (flagged_ && !addFlags(columns, *f)) return false;
         }
@@ -166,16 +164,8 @@ private:
 
     void finish() {
         read_.about = metadataOfLines(csv_.comments());
-        const auto told = read_.about.values.find(kSymmetry);
-        if (told != read_.about.values.end()) {
-            rows().isotropic = told->second == "isotropic";
-            read_.about.values.erase(told);
-        } else {
-            rows().isotropic = lightsAtOneAzimuth(rows().pairs);
-        }
-        if (negative_ > 0) {
-            read_.warnings.push_back(std::to_string(negative_) + " negative values");
-        }
+        takeRowNotes(read_.about, rows());
+        read_.warnings = negativeValues(rows());
     }
 
     BrdfRows& rows() { return read_.content; }
@@ -184,7 +174,6 @@ private:
     FileRead<BrdfRows> read_;
     std::vector<ChannelColumns> columns_;
     bool split_ = false, uncertain_ = false, flagged_ = false;
-    std::size_t negative_ = 0;
 };
 
 class Writer {
@@ -210,12 +199,7 @@ public:
 
 private:
     void comments(const Metadata& about) {
-        Metadata told = about;
-        if (rows_.isotropic != lightsAtOneAzimuth(rows_.pairs)) {
-            told.values.insert_or_assign(std::string(kSymmetry),
-                                         rows_.isotropic ? "isotropic" : "none");
-        }
-        for (std::string line : metadataLines(told)) {
+        for (std::string line : metadataLines(withRowNotes(about, rows_, false))) {
             for (char& c : line) c = c == '\n' || c == '\r' ? ' ' : c;
             // A blank at the end does not come back.
             while (line.ends_with(' ') || line.ends_with('\t')) line.pop_back();

@@ -80,11 +80,14 @@ private:
         out_.bytes += transmission ? "1\n1\n" : "0\n1\n";
     }
 
+    /// Not known, too, where it is more than any surface scatters and our reader takes.
     [[nodiscard]] double total(const SphericalBlock& block) {
+        constexpr double kMost = 1e4;
         double fraction = blockIntegral(table_, block);
         if (!std::isfinite(fraction)) fraction = block.tis;
-        noTotal_ += std::isfinite(fraction) ? 0U : 1U;
-        return std::isfinite(fraction) ? std::max(perCentOf(fraction), 0.0) : 0;
+        const bool known = std::isfinite(fraction) && fraction <= kMost;
+        noTotal_ += known ? 0U : 1U;
+        return known ? std::max(perCentOf(fraction), 0.0) : 0;
     }
 
     void values(const SphericalBlock& block) {

@@ -28,7 +28,10 @@ std::vector<Row> turnedCircle(const std::vector<double>& axis, double turn) {
     }
     std::stable_sort(
         rows.begin(), rows.end(), [](const Row& a, const Row& b) { return a.azimuth < b.azimuth; });
-    if (closed && rows.front().azimuth == 0) rows.push_back({kTurn, rows.front().from});
+    if (closed && rows.front().azimuth == 0) {
+        const std::size_t first = rows.front().from;
+        rows.push_back({kTurn, first == 0 ? axis.size() - 1 : first});  // unturned: as it was
+    }
     return rows;
 }
 

@@ -3,144 +3,157 @@
 #include <algorithm>
 #include <array>
 
+#include "proc/formats/alta.h"
+#include "proc/formats/astm.h"
+#include "proc/formats/bird.h"
+#include "proc/formats/exr_atlas.h"
+#include "proc/formats/exr_tiles.h"
 #include "proc/formats/gonio_exr.h"
 #include "proc/formats/graw_exr.h"
+#include "proc/formats/klems.h"
+#include "proc/formats/lighttools.h"
 #include "proc/formats/mbsdf.h"
 #include "proc/formats/merl.h"
+#include "proc/formats/pab.h"
 #include "proc/formats/points_csv.h"
+#include "proc/formats/rgl.h"
+#include "proc/formats/scattered_csv.h"
 #include "proc/formats/sniff.h"
+#include "proc/formats/speos.h"
+#include "proc/formats/ssdd.h"
+#include "proc/formats/stil_text.h"
 #include "proc/formats/utia.h"
 #include "proc/formats/zemax.h"
-#include "tests/formats/small_files.h"
+#include "tests/formats/sound_files.h"
 
 namespace gonio::test {
 namespace {
 
 using Complaint = std::optional<Error>;
-using Files = std::vector<std::string>;
+using Bytes = std::string_view;
 
-std::string bytesOf(const proc::Written& written) { return written.bytes; }
-std::string bytesOf(const std::string& bytes) { return bytes; }
+/// What a writer made; none where it refused.
+std::optional<std::string> bytesOf(const proc::Written& written) { return written.bytes; }
+std::optional<std::string> bytesOf(const Result<proc::Written>& written) {
+    return written ? std::optional(written->bytes) : std::nullopt;
+}
+std::optional<std::string> bytesOf(const std::optional<std::string>& written) { return written; }
+std::optional<std::string> bytesOf(const Result<std::string>& written) {
+    return written ? std::optional(*written) : std::nullopt;
+}
 
-/// What a reader made of the bytes, written and read again. A writer may refuse.
+/// What a reader made of the bytes, written and read again.
 template <class Read, class Write>
-Complaint thereAndBack(std::string_view bytes, const Read& read, const Write& write) {
-    const auto table = read(bytes);
+Complaint thereAndBack(Bytes bytes, const Read& read, const Write& write) {
+    const auto table = read(bytes, "in");
     if (!table) return table.error();
-    const auto written = write(*table);
+    const auto written = bytesOf(write(*table));
     if (!written) return std::nullopt;
-    const auto back = read(bytesOf(*written));
+    const auto back = read(*written, "in");
     if (back) return std::nullopt;
     return Error{ErrorKind::Internal, "does not read what it wrote: " + back.error().message};
 }
 
-// --- .gonio, .graw ---
-
-Complaint gonio(std::string_view bytes) {
+/// The same for a reader that gives the metadata beside the table, and a writer that takes them.
+template <class Read, class Write>
+Complaint withMetadata(Bytes bytes, const Read& read, const Write& write) {
     return thereAndBack(
-        bytes, [](auto b) { return proc::decodeGonio(b, "in"); }, proc::encodeGonio);
+        bytes, read, [&](const auto& file) { return write(file.content, file.about); });
 }
-Files soundGonio() { return {*proc::encodeGonio(smallSample())}; }
 
-Complaint graw(std::string_view bytes) {
-    return thereAndBack(
-        bytes, [](auto b) { return proc::decodeGraw(b, "in"); }, proc::encodeGraw);
+/// A reader without a writer.
+template <class Read>
+Complaint only(Bytes bytes, const Read& read) {
+    const auto table = read(bytes, "in");
+    return table ? Complaint() : table.error();
 }
-Files soundGraw() { return {*proc::encodeGraw(smallCapture())}; }
 
-// --- Zemax ---
-
-Complaint zemax(std::string_view bytes) {
-    return thereAndBack(
+Complaint gonio(Bytes bytes) { return thereAndBack(bytes, proc::decodeGonio, proc::encodeGonio); }
+Complaint graw(Bytes bytes) { return thereAndBack(bytes, proc::decodeGraw, proc::encodeGraw); }
+Complaint zemax(Bytes bytes) {
+    return thereAndBack(bytes, proc::parseZemax, [](const auto& t) { return proc::writeZemax(t); });
+}
+Complaint lightTools(Bytes bytes) {
+    return withMetadata(
         bytes,
-        [](auto b) { return proc::parseZemax(b, "in"); },
-        [](const auto& table) { return std::optional(proc::writeZemax(table)); });
+        [](auto text, auto name) { return proc::parseLightTools(text, name); },
+        proc::writeLightTools);
 }
-Files soundZemax() {
-    const std::string mono = smallZemax();
-    const std::size_t data = mono.find("\nMonochrome\n") + 1;
-    const std::string section = mono.substr(mono.find("DataBegin"));
-    return {mono,
-            replaced(mono.substr(0, data), "Monochrome", "XYZ") + "TristimulusX\n" + section +
-                "TristimulusY\n" + section + "TristimulusZ\n" + section,
-            replaced(mono, "PlaneSymmetrical", "ASymmetrical4D")};
+Complaint merl(Bytes bytes) { return withMetadata(bytes, proc::parseMerl, proc::writeMerl); }
+Complaint utia(Bytes bytes) {
+    return withMetadata(
+        bytes, [](auto b, auto name) { return proc::parseUtia(b, name); }, proc::writeUtia);
 }
-
-// --- MERL, UTIA, .mbsdf ---
-
-Complaint merl(std::string_view bytes) {
-    return thereAndBack(
-        bytes,
-        [](auto b) { return proc::parseMerl(b, "in"); },
-        [](const auto& file) { return std::optional(proc::writeMerl(file.content, file.about)); });
+Complaint rgl(Bytes bytes) { return withMetadata(bytes, proc::parseRgl, proc::writeRgl); }
+Complaint bird(Bytes bytes) { return withMetadata(bytes, proc::parseBird, proc::writeBird); }
+Complaint speos(Bytes bytes) {
+    const Complaint isotropic = withMetadata(bytes, proc::parseSpeos, proc::writeSpeosBrdf);
+    return isotropic ? isotropic
+                     : withMetadata(bytes, proc::parseSpeos, proc::writeSpeosAnisotropic);
 }
-/// Of 3 x 2 x 4 cells: 588 bytes.
-Files soundMerl() {
-    std::string bytes;
-    for (const char count : {'\3', '\2', '\4'}) bytes += std::string{count, 0, 0, 0};
-    for (int i = 0; i < 3 * 24; ++i) {
-        const double value = i % 7 == 0 ? -1 : 100.0 + i;
-        bytes.append(reinterpret_cast<const char*>(&value), sizeof value);  // NOLINT
-    }
-    return {bytes};
+Complaint mbsdf(Bytes bytes) { return withMetadata(bytes, proc::parseMbsdf, proc::writeMbsdf); }
+Complaint ssdd(Bytes bytes) {
+    return withMetadata(
+        bytes, proc::parseSsdd, [](const proc::SsddTable& table, const proc::Metadata& about) {
+            const auto* spherical = std::get_if<proc::SphericalTable>(&table);
+            return proc::writeSsdd(spherical ? *spherical : proc::SphericalTable(), about);
+        });
 }
-
-Complaint utia(std::string_view bytes) {
-    return thereAndBack(
-        bytes,
-        [](auto b) { return proc::parseUtia(b, "in"); },
-        [](const auto& file) { return proc::writeUtia(file.content, file.about); });
+Complaint csv(Bytes bytes) {
+    return withMetadata(bytes, proc::parseScatteredCsv, proc::writeScatteredCsv);
 }
-Files soundUtia() { return {proc::writeUtia(proc::utiaGrid())->bytes}; }
-
-Complaint mbsdf(std::string_view bytes) {
-    return thereAndBack(
-        bytes,
-        [](auto b) { return proc::parseMbsdf(b, "in"); },
-        [](const auto& file) { return proc::writeMbsdf(file.content, file.about); });
+Complaint astm(Bytes bytes) { return withMetadata(bytes, proc::parseAstm, proc::writeAstm); }
+Complaint pab(Bytes bytes) {
+    const auto first = [](const auto& rows, const auto& about) -> std::optional<std::string> {
+        const auto written = proc::writePab(rows, about);
+        if (!written || written->files.empty()) return std::nullopt;
+        return written->files[0].bytes;
+    };
+    return withMetadata(bytes, proc::parsePab, first);
 }
-Files soundMbsdf() {
-    Files files;
-    proc::Metadata about;
-    about.set(proc::key::kSample, "a \"test\" tile");
-    for (const bool colours : {false, true}) {
-        auto channels = colours ? proc::Channel::ofBands() : std::vector<proc::Channel>(1);
-        auto table =
-            proc::mbsdfGrid(std::move(channels),
-                            {.thetas = 3, .azimuths = 4},
-                            colours ? std::optional(proc::MbsdfShape{2, 2}) : std::nullopt);
-        for (auto& block : table.blocks) std::fill(block.f.begin(), block.f.end(), 0.25);
-        files.push_back(proc::writeMbsdf(table, about)->bytes);
-    }
-    return files;
+Complaint alta(Bytes bytes) { return withMetadata(bytes, proc::parseAlta, proc::writeAlta); }
+Complaint exrTiles(Bytes bytes) {
+    return withMetadata(bytes, proc::decodeExrTiles, [](const auto& table, const auto& about) {
+        return proc::encodeExrTiles(table, about);
+    });
 }
-
-// --- What is no BRDF ---
-
-Complaint points(std::string_view bytes) {
-    const auto read = proc::parsePoints(bytes, "in");
-    return read ? Complaint() : read.error();
+Complaint exrAtlas(Bytes bytes) {
+    return thereAndBack(bytes, proc::decodeExrAtlas, [](const auto& files) {
+        std::vector<proc::AtlasSample> samples;
+        for (const auto& file : files) samples.push_back({file.content, file.about});
+        return proc::encodeExrAtlas(samples);
+    });
 }
-Files soundPoints() { return {smallPoints()}; }
-
-Complaint sniff(std::string_view bytes) {
+Complaint klems(Bytes bytes) { return only(bytes, proc::parseKlems); }
+Complaint stil(Bytes bytes) { return only(bytes, proc::parseStilText); }
+Complaint points(Bytes bytes) { return only(bytes, proc::parsePoints); }
+Complaint sniff(Bytes bytes) {
     for (const char* path : {"in.bsdf", "in.csv", "in"}) {
         (void)proc::sniff(bytes, bytes.size(), path);
     }
     return std::nullopt;
-}
-Files soundHeads() {
-    return {
-        smallZemax(), smallPoints(), std::string("tensor_file\0\1\0", 14), "AOI 10\nSide Front\n"};
 }
 
 constexpr std::array kReaders{
     Reader{"gonio", false, soundGonio, gonio},
     Reader{"graw", false, soundGraw, graw},
     Reader{"zemax", true, soundZemax, zemax},
+    Reader{"lighttools", true, soundLightTools, lightTools},
     Reader{"merl", false, soundMerl, merl},
     Reader{"utia", false, soundUtia, utia},
+    Reader{"rgl", false, soundRgl, rgl},
+    Reader{"bird", true, soundBird, bird},
+    Reader{"speos", true, soundSpeos, speos},
     Reader{"mbsdf", false, soundMbsdf, mbsdf},
+    Reader{"ssdd", true, soundSsdd, ssdd},
+    Reader{"astm", true, soundAstm, astm},
+    Reader{"pab", true, soundPab, pab},
+    Reader{"alta", true, soundAlta, alta},
+    Reader{"csv", true, soundCsv, csv},
+    Reader{"exr-tiles", false, soundExrTiles, exrTiles},
+    Reader{"exr-atlas", false, soundExrAtlas, exrAtlas},
+    Reader{"klems", true, soundKlems, klems},
+    Reader{"stil", true, soundStil, stil},
     Reader{"points", true, soundPoints, points},
     Reader{"sniff", true, soundHeads, sniff},
 };

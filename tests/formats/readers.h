@@ -13,7 +13,7 @@
 namespace gonio::test {
 
 struct Reader {
-    std::string_view name;  ///< of the format (proc/formats/format.h), or "points", "sniff"
+    std::string_view name;  ///< of the format (proc/formats/format.h), or "stil", "points", "sniff"
     bool text = true;
     std::vector<std::string> (*sound)();
     /// What the reader says of the bytes: nothing where it takes them. What it takes is written by

@@ -85,6 +85,7 @@ const std::vector<Wrapped> kWrapped{
     {std::regex("(OpenEXR/)?Imf.*|Imath/.*|Imath.*"), "proc/formats/"},
     {std::regex("libusb.*|hidapi.*"), "driver/"},
     {std::regex("png\\.h"), "proc/report/png.cpp"},
+    {std::regex("pugixml\\.hpp"), "proc/formats/klems.cpp"},
     {std::regex("sqlite3\\.h|httplib\\.h|systemd/.*"), "daemon/"},
     // json_fwd.hpp declares names only.
     {std::regex("(opencv2|CLI|toml\\+\\+|embree3)/.*|nlohmann/(?!json_fwd\\.hpp).*"), ""},
