@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -162,6 +163,24 @@ TEST(ExrTiles, HoldBothSidesOfAPlaneSymmetricalTable) {
     ASSERT_TRUE(read);
     EXPECT_EQ(read->content.symmetry, TableSymmetry::Asymmetrical);
     EXPECT_EQ(read->warnings.size(), 1U);
+}
+
+TEST(ExrTiles, StandBesideEachOtherAsAsked) {
+    const SpecularTable table =
+        filled(*model("lambert,albedo=0.3/0.2/0.1+ggx,alpha=0.2,f0=0.5"), {8, 4});
+    for (const std::size_t columns : {1U, 2U, 3U, 4U, 100U}) {
+        const auto written = encodeExrTiles(table, {}, {.columns = columns});
+        ASSERT_TRUE(written);
+        const auto parts = decodeExr(written->bytes, {.largest = {99, 99}, .parts = 1});
+        ASSERT_TRUE(parts);
+        EXPECT_EQ(parts->front().size.width,
+                  8 * static_cast<int>(std::min<std::size_t>(columns, 4)));
+        const SpecularTable back = decoded(written).content;
+        for (std::size_t i = 0; i < table.nodeCount(); ++i) {
+            const double f = table.planes[2].f[i];
+            ASSERT_NEAR(back.planes[2].f[i], f, 1e-7 * f);
+        }
+    }
 }
 
 TEST(ExrTiles, KeepMasks) {
