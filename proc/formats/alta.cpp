@@ -122,14 +122,21 @@ private:
         return false;
     }
 
+    bool comment(std::string_view text) {
+        if (comments_.size() == kMostComments) {
+            return fail("more than " + std::to_string(kMostComments) + " comments");
+        }
+        comments_.emplace_back(text);
+        return true;
+    }
+
     bool headerLine(std::string_view line) {
         const bool free = line.starts_with(' ') || line.empty();  // "# text" is a comment
         const std::size_t size = std::min(line.find_first_of(" \t"), line.size());
         const std::string_view keyword = line.substr(0, size);
         const std::string_view value = trimmed(line.substr(size));
         if (free) {
-            comments_.emplace_back(line.empty() ? line : line.substr(1));
-            return true;
+            return comment(line.empty() ? line : line.substr(1));
         }
         if (columns_ > 0) return fail("the keyword " + shown(keyword) + " among the rows");
         if (!keys_.insert(lower(keyword)).second) return fail(shown(keyword) + " is given twice");

@@ -47,13 +47,20 @@ private:
         return false;
     }
 
+    bool comment(std::string_view text) {
+        if (comments_.size() == kMostComments) {
+            return fail("more than " + std::to_string(kMostComments) + " comments");
+        }
+        comments_.emplace_back(text);
+        return true;
+    }
+
     bool headerLine(std::string_view line) {
         const std::size_t size = std::min(line.find_first_of(" \t"), line.size());
         std::string_view keyword = line.substr(0, size);
         const std::string_view value = trimmed(line.substr(size));
         if (keyword.empty()) {
-            comments_.emplace_back(line.empty() ? line : line.substr(1));
-            return true;
+            return comment(line.empty() ? line : line.substr(1));
         }
         if (keyword.ends_with(':')) keyword.remove_suffix(1);
         const std::string known = lower(keyword);
@@ -67,8 +74,7 @@ private:
                                                          "sample_name"};
         if (std::find(kKnown.begin(), kKnown.end(), known) == kKnown.end()) {
             if (known == "upphi") return angle(keyword, value, upPhi_);
-            comments_.emplace_back(line);
-            return true;
+            return comment(line);
         }
         if (!keys_.insert(known).second) return fail("#" + known + " is given twice");
         if (!rows().channels.empty()) return fail("#" + known + " among the rows");

@@ -43,6 +43,10 @@ namespace gonio::proc {
     return reuse;
 }
 
+/// More comments than any file that was made to be read has: one of a megabyte may take no more
+/// memory than fifty.
+inline constexpr std::size_t kMostComments = 10'000;
+
 class TextLines {
 public:
     explicit TextLines(std::string_view text) : text_(text) {

@@ -190,15 +190,14 @@ std::vector<Damaged> withAMegabyteOfOne(std::string_view sound) {
                                    "\n", "\r",      "\t",   ",",         ";",   "1 ", "1\n",
                                    "1,", "&",       "<!--", "a=\"b\"\n", "[1,", "- "};
     for (const std::string& word : wordsOf(sound)) {
-        if (words.size() < 40) words.push_back(word + " ");
-        if (words.size() < 60) words.push_back(word + "\n");
+        if (words.size() < 32) words.push_back(word + (words.size() % 2 == 0 ? " " : "\n"));
     }
     std::vector<Damaged> all;
     const std::size_t line = sound.find('\n', sound.size() / 3);
     const std::size_t middle = line == std::string_view::npos ? sound.size() / 2 : line + 1;
     for (const std::string& word : words) {
         const std::string many = repeated(word);
-        all.push_back({"a megabyte of " + inQuotes(word), many});
+        if (all.size() < 40) all.push_back({"a megabyte of " + inQuotes(word), many});
         all.push_back({"a megabyte of " + inQuotes(word) + " behind", std::string(sound) + many});
         all.push_back(
             {"a megabyte of " + inQuotes(word) + " within", with(sound, {middle, middle}, many)});
