@@ -19,6 +19,7 @@
 #include "proc/formats/zemax.h"
 #include "proc/models/spec.h"
 #include "proc/table/specular_fill.h"
+#include "proc/table/tensor_bsdf.h"
 #include "tests/support/temp_folder.h"
 
 namespace gonio::proc {
@@ -136,7 +137,7 @@ void expectTruth(const std::string& script,
     }
     // The lobe of one side, looked for on the other, is far off: or this would prove nothing of it.
     if (&truth == &kOneSided) {
-        EXPECT_GT(otherSide, 10 * relative);
+        EXPECT_GT(otherSide, 5 * relative);
     }
 }
 
@@ -179,20 +180,23 @@ TEST(IndependentReaders, ReadTheMerlFilesThatWeWrite) {
 
 TEST(IndependentReaders, ReadTheRglFilesThatWeWrite) {
     if (!hasPython()) return;
-    // Lights at the table's own; the square's 64 nodes a side, linear between them: 1.1 % at most
-    // here, where views are near the horizon.
+    // Lights at the table's own. The square has 64 nodes a side, linear between them: with half
+    // vectors near the normal, where all its azimuths meet, that is up to 4 % of a lobe that
+    // differs between them, else 1.1 %. What our own look-up answers, from the table in memory, is
+    // the same to what single precision leaves.
     const std::vector<double> incidences{0, 20, 40, 60};
+    const std::vector<Band> bands{Band::R, Band::G, Band::B};
     const auto truth = model(kSmooth);
     for (const Scatterer* each :
          {static_cast<const Scatterer*>(truth.get()), static_cast<const Scatterer*>(&kOneSided)}) {
-        const auto written = writeRgl(fitTensor(*each).table);
+        const TensorTable table = fitTensor(*each).table;
+        const auto written = writeRgl(table);
         ASSERT_TRUE(written) << written.error().message;
-        expectTruth("rgl.py",
-                    written->bytes,
-                    *each,
-                    pairsAt(incidences),
-                    2e-2,
-                    {Band::R, Band::G, Band::B});
+        const auto own = TensorBsdf::over(table);
+        ASSERT_TRUE(own) << own.error().message;
+        const auto pairs = pairsAt(incidences);
+        expectTruth("rgl.py", written->bytes, *each, pairs, 5e-2, bands);
+        expectTruth("rgl.py", written->bytes, *own, pairs, 1e-5, bands);
     }
 }
 
