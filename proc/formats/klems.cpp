@@ -6,6 +6,7 @@
 #include <pugixml.hpp>
 #include <set>
 #include <tuple>
+#include <utility>
 
 #include "proc/core/number_text.h"
 #include "proc/formats/shown.h"

@@ -28,12 +28,16 @@ struct Head {
     [[nodiscard]] bool fromBehind() const { return back.value_or(false) || *incidence > 90; }
 };
 
+/// Degrees to 1e-9, as they are written.
+double rounded(double degrees) { return std::round(degrees * 1e9) / 1e9; }
+
 double foldedIncidence(const Head& head) {
-    return std::min(*head.incidence, 180 - *head.incidence);
+    return rounded(std::min(*head.incidence, 180 - *head.incidence));
 }
 double lightAzimuth(const Head& head) {
     const double plane = head.plane.value_or(0);
-    return plane - 360 * std::floor(plane / 360);
+    const double azimuth = rounded(plane - 360 * std::floor(plane / 360));
+    return azimuth >= 360 ? 0 : azimuth;
 }
 
 struct ReadBlock {
@@ -156,7 +160,7 @@ private:
                                 std::to_string(i + 1) + " of the " + std::to_string(*count) +
                                 " of " + keyword);
             }
-            if (!into.empty() && *value <= into.back()) {
+            if (!into.empty() && *value < into.back() + kFinestStepDeg) {
                 return failSeen("more than " + shortest(into.back()) + ": " + keyword +
                                 " must ascend");
             }
@@ -227,7 +231,7 @@ private:
 
     bool isWhole(Head& head) {
         if (!head.incidence) return fail("a block has no AOI");
-        if (*head.incidence == 90) return fail("AOI 90 is grazing, wanted below it");
+        if (foldedIncidence(head) >= 90) return fail("AOI 90 is grazing, wanted below it");
         if (!head.transmission) return fail("a block has no ScatterType");
         if (xyz_ != head.tristimulus.has_value()) {
             return fail(xyz_ ? "XYZ, but a block has no TristimulusValue"

@@ -71,7 +71,10 @@ private:
             }
             const double which =
                 xyz_ ? static_cast<double>(*tristimulus(channel)) : channel.nanometres.value_or(0);
-            if (!seen.emplace(block.transmission, block.incidenceDeg, block.lightAzimuthDeg, which)
+            if (!seen.emplace(block.transmission,
+                              written(block.incidenceDeg),
+                              written(block.lightAzimuthDeg),
+                              which)
                      .second) {
                 ++channels;
                 continue;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <optional>
 
 #include "proc/core/number_text.h"
@@ -117,7 +118,8 @@ private:
     bool axis(std::vector<double>& into, std::size_t size, const AxisRule& rule) {
         if (!array(into, size, std::string(rule.name))) return false;
         for (std::size_t i = 0; i < size; ++i) {
-            if (into[i] < rule.low || into[i] > rule.high || (i > 0 && into[i] <= into[i - 1])) {
+            if (into[i] < rule.low || into[i] > rule.high ||
+                (i > 0 && into[i] < into[i - 1] + kFinestStepDeg)) {
                 return fail(std::string(rule.name) + " " + shortest(into[i]) +
                             ", wanted ascending in [" + shortest(rule.low) + ", " +
                             shortest(rule.high) + "]");
@@ -184,7 +186,7 @@ private:
         }
         for (const double nm : nanometres) {
             double percent = 0;
-            if (!number(percent, "per cent", 0, 1e6)) return false;
+            if (!number(percent, "per cent", 0, std::numeric_limits<double>::max())) return false;
             text += (text.empty() ? "" : ", ") + shortest(nm) + " " + shortest(percent);
         }
         out_.content.channels = {rows == 1 ? Channel{"", nanometres[0]} : Channel{}};

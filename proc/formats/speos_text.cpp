@@ -62,6 +62,11 @@ private:
     int line_ = 1;
 };
 
+constexpr double kMost = std::numeric_limits<double>::max();
+
+/// Of a description: bounds what an empty line costs in memory.
+constexpr std::ptrdiff_t kMostLines = 10'000;
+
 bool blank(std::string_view text) {
     return text.find_first_not_of(" \t\f\v") == std::string_view::npos;
 }
@@ -146,7 +151,7 @@ private:
     }
     bool ascends(const std::vector<double>& axis, const std::string& what) {
         for (std::size_t i = 1; i < axis.size(); ++i) {
-            if (axis[i] <= axis[i - 1]) {
+            if (axis[i] < axis[i - 1] + kFinestStepDeg) {
                 return fail(shortest(axis[i]) + " after " + shortest(axis[i - 1]) + ": " + what +
                             " must ascend");
             }
@@ -169,12 +174,16 @@ private:
                         std::to_string(at_.bytesLeft()) + " bytes are left");
         }
         at_.restOfLine();
-        const auto lines = linesOf(at_.characters(static_cast<std::size_t>(*characters)));
+        const auto text = at_.characters(static_cast<std::size_t>(*characters));
+        if (std::count(text.begin(), text.end(), '\n') > kMostLines ||
+            std::count(text.begin(), text.end(), '\r') > kMostLines) {
+            return fail("a description of more than " + std::to_string(kMostLines) + " lines");
+        }
         if (!blank(at_.restOfLine())) {
             return fail("the description is longer than its " + std::to_string(*characters) +
                         " characters");
         }
-        out_.about = metadataOfLines(lines);
+        out_.about = metadataOfLines(linesOf(text));
         if (!own_ && !blank(comment)) {
             out_.about.comments.insert(out_.about.comments.begin(), comment);
         }
@@ -206,7 +215,7 @@ private:
                     SphericalBlock block{.channel = channel,
                                          .incidenceDeg = incidence,
                                          .transmission = transmission};
-                    if (!number(block.tis, "total per cent", 0, 1e6)) return false;
+                    if (!number(block.tis, "total per cent", 0, kMost)) return false;
                     block.tis /= 100;
                     if (!table(std::move(block))) return false;
                 }
@@ -226,6 +235,15 @@ private:
         return std::adjacent_find(values.begin(), values.end()) == values.end() ||
                fail("two equal " + what);
     }
+    bool distinctOnCircle(std::vector<double> angles) {
+        for (double& angle : angles) angle -= 360 * std::floor(angle / 360);
+        std::sort(angles.begin(), angles.end());
+        for (std::size_t i = 0; i < angles.size(); ++i) {
+            const double next = i + 1 < angles.size() ? angles[i + 1] : angles[0] + 360;
+            if (next - angles[i] < kFinestStepDeg) return fail("two equal anisotropy angles");
+        }
+        return true;
+    }
     [[nodiscard]] std::vector<bool> sides() const {
         std::vector<bool> sides;
         if (reflection_) sides.push_back(false);
@@ -242,8 +260,7 @@ private:
         std::size_t angles = 0;
         std::vector<double> angleDeg;
         if (!count(angles, "anisotropy angles") ||
-            !list(angleDeg, angles, "anisotropy angle", -360, 360) ||
-            !distinct(angleDeg, "anisotropy angles")) {
+            !list(angleDeg, angles, "anisotropy angle", -360, 360) || !distinctOnCircle(angleDeg)) {
             return false;
         }
         for (const double angle : angleDeg) {
@@ -294,7 +311,7 @@ private:
         double nm = 0;
         for (std::size_t i = 0; i < rows * sides().size(); ++i) {
             double percent = 0;
-            if (!number(nm, "wavelength", 1e-3, 1e9) || !number(percent, "per cent", 0, 1e6)) {
+            if (!number(nm, "wavelength", 1e-3, 1e9) || !number(percent, "per cent", 0, kMost)) {
                 return false;
             }
             text += (text.empty() ? "" : ", ") + shortest(nm) + " " + shortest(percent);
@@ -321,7 +338,6 @@ private:
         for (std::size_t t = 0; t < thetas; ++t) {
             if (!number(block.thetaDeg[t], "theta", 0, 180)) return false;
             for (std::size_t a = 0; a < phis; ++a) {
-                constexpr double kMost = std::numeric_limits<double>::max();
                 if (!number(block.f[block.index(a, t)], "value", -kMost, kMost)) return false;
             }
         }

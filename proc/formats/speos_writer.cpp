@@ -80,14 +80,16 @@ private:
         out_.bytes += transmission ? "1\n1\n" : "0\n1\n";
     }
 
-    /// Not known, too, where it is more than any surface scatters and our reader takes.
-    [[nodiscard]] double total(const SphericalBlock& block) {
-        constexpr double kMost = 1e4;
-        double fraction = blockIntegral(table_, block);
-        if (!std::isfinite(fraction)) fraction = block.tis;
-        const bool known = std::isfinite(fraction) && fraction <= kMost;
-        noTotal_ += known ? 0U : 1U;
-        return known ? std::max(perCentOf(fraction), 0.0) : 0;
+    /// Per cent; empty where neither the table nor its file tells.
+    [[nodiscard]] std::optional<double> total(const SphericalBlock& block) const {
+        double percent = perCentOf(blockIntegral(table_, block));
+        if (!std::isfinite(percent)) percent = perCentOf(block.tis);
+        if (!std::isfinite(percent)) return std::nullopt;
+        return std::max(percent, 0.0);
+    }
+    [[nodiscard]] double orNone(std::optional<double> percent) {
+        noTotal_ += percent ? 0U : 1U;
+        return percent.value_or(0);
     }
 
     void values(const SphericalBlock& block) {
@@ -116,7 +118,7 @@ private:
     [[nodiscard]] Blocks ofBrdf(const std::vector<std::size_t>& channels,
                                 bool transmission,
                                 std::set<double>& incidences);
-    [[nodiscard]] std::vector<SpectrumRow> spectrumAsRead(std::size_t sides) const;
+    [[nodiscard]] std::vector<SpectrumRow> spectrumAsRead() const;
     [[nodiscard]] std::vector<SpectrumRow> spectrumOf(const std::vector<Fans>& sides);
     void turns(const Fans& fans);
 
@@ -192,7 +194,7 @@ Result<Written> Writer::brdf() {
     list(nanometres);
     for (const Blocks& side : sides) {
         for (const SphericalBlock* block : side) {
-            out_.bytes += shortest(total(*block)) + "\n";
+            out_.bytes += shortest(orNone(total(*block))) + "\n";
             values(*block);
         }
     }
@@ -202,9 +204,8 @@ Result<Written> Writer::brdf() {
     return done();
 }
 
-/// The rows that were read, where they fit; empty otherwise.
-std::vector<SpectrumRow> Writer::spectrumAsRead(std::size_t sides) const {
-    if (table_.channels.size() != 1 || table_.channels[0].nanometres) return {};
+/// The rows that were read; empty where there are none.
+std::vector<SpectrumRow> Writer::spectrumAsRead() const {
     std::vector<SpectrumRow> rows;
     std::string_view text = about_.at(kSpeosSpectrum);
     while (!text.empty()) {
@@ -217,7 +218,7 @@ std::vector<SpectrumRow> Writer::spectrumAsRead(std::size_t sides) const {
         rows.push_back({*nm, *percent});
         text.remove_prefix(std::min(end + 2, text.size()));
     }
-    return rows.size() % sides == 0 ? rows : std::vector<SpectrumRow>{};
+    return rows;
 }
 
 /// The totals of each wavelength at the first block of each side.
@@ -228,19 +229,28 @@ std::vector<SpectrumRow> Writer::spectrumOf(const std::vector<Fans>& sides) {
     }
     const bool known = !nanometres.empty();
     if (!known) nanometres = {kAnyWavelength.begin(), kAnyWavelength.end()};
+    const std::vector<SpectrumRow> read = spectrumAsRead();
     std::vector<SpectrumRow> rows;
     for (const Fans& fans : sides) {
         const SphericalBlock& first = *fans.begin()->second.begin()->second;
+        std::map<double, const SphericalBlock*> there;
+        for (const SphericalBlock& block : table_.blocks) {
+            const auto nm = table_.channels[block.channel].nanometres;
+            if (nm && block.transmission == first.transmission &&
+                block.incidenceDeg == first.incidenceDeg &&
+                block.lightAzimuthDeg == first.lightAzimuthDeg) {
+                there.emplace(*nm, &block);
+            }
+        }
         for (const double nm : nanometres) {
-            const auto block = std::find_if(
-                table_.blocks.begin(), table_.blocks.end(), [&](const SphericalBlock& b) {
-                    return (!known || table_.channels[b.channel].nanometres == nm) &&
-                           b.transmission == first.transmission &&
-                           b.incidenceDeg == first.incidenceDeg &&
-                           b.lightAzimuthDeg == first.lightAzimuthDeg;
-                });
-            noTotal_ += block == table_.blocks.end() ? 1U : 0U;
-            rows.push_back({nm, block == table_.blocks.end() ? 0 : total(*block)});
+            const auto found = there.find(nm);
+            const SphericalBlock* block = !known                 ? &first
+                                          : found == there.end() ? nullptr
+                                                                 : found->second;
+            auto percent = block == nullptr ? std::nullopt : total(*block);
+            const std::size_t i = rows.size();
+            if (!percent && i < read.size() && read[i].nanometres == nm) percent = read[i].percent;
+            rows.push_back({nm, orNone(percent)});
         }
     }
     return rows;
@@ -279,8 +289,9 @@ Result<Written> Writer::anisotropic() {
     for (const Fans& fans : sides) turns(fans);
     list({sides.front().begin()->second.begin()->first, 0});
     out_.bytes += "\n";
-    auto rows = spectrumAsRead(sides.size());
-    if (rows.empty()) rows = spectrumOf(sides);
+    const bool oneShape = table_.channels.size() == 1 && !table_.channels[0].nanometres;
+    auto rows = oneShape ? spectrumAsRead() : std::vector<SpectrumRow>{};
+    if (rows.empty() || rows.size() % sides.size() != 0) rows = spectrumOf(sides);
     out_.bytes += std::to_string(rows.size() / sides.size()) + "\n";
     for (const SpectrumRow& row : rows) list({row.nanometres, row.percent});
     for (const Fans& fans : sides) {

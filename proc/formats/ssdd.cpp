@@ -6,6 +6,7 @@
 #include <cstring>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "proc/core/number_text.h"
 #include "proc/formats/shown.h"
@@ -216,7 +217,7 @@ private:
             if (!value || *value < 0 || *value > most) {
                 return fail(shown(words[i]) + ", wanted numbers in [0, " + shortest(most) + "]");
             }
-            if (!into.empty() && *value <= into.back()) {
+            if (!into.empty() && *value < into.back() + kFinestStepDeg) {
                 return fail(shown(words[i]) + " after " + shortest(into.back()) +
                             ": lists must ascend");
             }
@@ -406,7 +407,7 @@ private:
     }
 
     void finish() {
-        out_.about = metadataOfLines(comments_);
+        out_.about = metadataOfLines(std::exchange(comments_, {}));
         for (const auto& [name, value] : fields_.values) {
             if (out_.about.at(name).empty()) out_.about.set(name, value);
         }

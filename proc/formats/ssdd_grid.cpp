@@ -81,7 +81,8 @@ std::vector<std::string> withoutGrazingLight(SsddGrid& grid) {
         if (grid.list[0][i] < 90) incidences.push_back(i);
     }
     for (std::size_t i = 0; i < grid.list[1].size(); ++i) {
-        if (i == 0 || grid.list[1][i] < grid.list[1][0] + kTurn) azimuths.push_back(i);
+        if (i == 0 || grid.list[1][i] < grid.list[1][0] + kTurn - kFinestStepDeg)
+            azimuths.push_back(i);
     }
     if (incidences.size() < grid.list[0].size()) {
         warnings.emplace_back("incidence 90 is not read: its light does not reach the surface");

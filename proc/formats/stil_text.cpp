@@ -81,15 +81,18 @@ struct Scan {
 
 double rounded(double degrees) { return std::round(degrees * 1e9) / 1e9; }
 
+/// Where a value of an axis stands that is on it.
+std::size_t placeOf(const std::vector<double>& axis, double at) {
+    return static_cast<std::size_t>(std::lower_bound(axis.begin(), axis.end(), at) - axis.begin());
+}
+
 /// The normal is the same direction on the other half of its plane, too.
 void atPole(SphericalBlock& block, std::size_t azimuth, std::size_t theta) {
-    const double across = std::fmod(block.azimuthDeg[azimuth] + 180, 360);
-    for (std::size_t a = 0; a < block.azimuthDeg.size(); ++a) {
-        double& f = block.f[block.index(a, theta)];
-        if (std::abs(block.azimuthDeg[a] - across) < 1e-9 && std::isnan(f)) {
-            f = block.f[block.index(azimuth, theta)];
-        }
-    }
+    const double across = rounded(std::fmod(block.azimuthDeg[azimuth] + 180, 360));
+    const std::size_t place = placeOf(block.azimuthDeg, across);
+    if (place == block.azimuthDeg.size() || block.azimuthDeg[place] != across) return;
+    double& f = block.f[block.index(place, theta)];
+    if (std::isnan(f)) f = block.f[block.index(azimuth, theta)];
 }
 
 SphericalBlock blockOf(const Scan& scan) {
@@ -108,14 +111,10 @@ SphericalBlock blockOf(const Scan& scan) {
     block.azimuthDeg.assign(azimuths.begin(), azimuths.end());
     block.thetaDeg.assign(thetas.begin(), thetas.end());
     block.f.assign(azimuths.size() * thetas.size(), std::numeric_limits<double>::quiet_NaN());
-    const auto place = [](const std::vector<double>& axis, double at) {
-        return static_cast<std::size_t>(std::lower_bound(axis.begin(), axis.end(), at) -
-                                        axis.begin());
-    };
     for (std::size_t t = 0; t < scan.thetas; ++t) {
-        const std::size_t theta = place(block.thetaDeg, thetaOf(t));
+        const std::size_t theta = placeOf(block.thetaDeg, thetaOf(t));
         for (std::size_t p = 0; p < scan.phis; ++p) {
-            const std::size_t azimuth = place(block.azimuthDeg, azimuthOf(t, p));
+            const std::size_t azimuth = placeOf(block.azimuthDeg, azimuthOf(t, p));
             block.f[block.index(azimuth, theta)] = scan.values[t * scan.phis + p];
             if (block.thetaDeg[theta] == 0) atPole(block, azimuth, theta);
         }

@@ -18,6 +18,9 @@
 
 namespace gonio::proc {
 
+/// Directions nearer than this are one, in degrees: readers refuse axes with smaller steps.
+inline constexpr double kFinestStepDeg = 1e-6;
+
 struct SphericalBlock {
     std::size_t channel = 0;
     double lightAzimuthDeg = 0;  ///< in the sample's frame, [0, 360)

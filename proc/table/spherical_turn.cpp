@@ -8,6 +8,8 @@ namespace {
 
 constexpr double kTurn = 360;
 constexpr double kSame = 1e-9;
+/// A little more than what readers accept, so that rounding makes no difference to them.
+constexpr double kOneNode = 1.1 * kFinestStepDeg;
 
 double intoTurn(double azimuth) {
     const double within = azimuth - kTurn * std::floor(azimuth / kTurn);
@@ -20,14 +22,23 @@ struct Row {
     std::size_t from = 0;
 };
 
+void dropRepeated(std::vector<Row>& rows) {
+    const auto same = [](const Row& a, const Row& b) { return b.azimuth - a.azimuth <= kOneNode; };
+    rows.erase(std::unique(rows.begin(), rows.end(), same), rows.end());
+    while (rows.size() > 1 && rows.front().azimuth + kTurn - rows.back().azimuth <= kOneNode) {
+        rows.pop_back();
+    }
+}
+
 std::vector<Row> turnedCircle(const std::vector<double>& axis, double turn) {
-    const bool closed = axis.size() > 1 && std::abs(axis.back() - axis.front() - kTurn) <= kSame;
+    const bool closed = axis.size() > 1 && std::abs(axis.back() - axis.front() - kTurn) <= kOneNode;
     std::vector<Row> rows;
     for (std::size_t i = 0; i + (closed ? 1 : 0) < axis.size(); ++i) {
         rows.push_back({intoTurn(axis[i] + turn), i});
     }
     std::stable_sort(
         rows.begin(), rows.end(), [](const Row& a, const Row& b) { return a.azimuth < b.azimuth; });
+    dropRepeated(rows);
     if (closed && rows.front().azimuth == 0) {
         const std::size_t first = rows.front().from;
         rows.push_back({kTurn, first == 0 ? axis.size() - 1 : first});  // unturned: as it was
@@ -56,8 +67,7 @@ std::vector<Row> unfolded(const std::vector<double>& axis, double mirror) {
     }
     std::stable_sort(
         rows.begin(), rows.end(), [](const Row& a, const Row& b) { return a.azimuth < b.azimuth; });
-    const auto same = [](const Row& a, const Row& b) { return b.azimuth - a.azimuth <= kSame; };
-    rows.erase(std::unique(rows.begin(), rows.end(), same), rows.end());
+    dropRepeated(rows);
     return rows;
 }
 

@@ -210,6 +210,12 @@ TEST(SpeosText, RefusesWhatDoesNotFit) {
     EXPECT_TRUE(refuses(parseSpeos(replaced(brdf(), "\n0\n", "\n1\n"), "in"), {"mode 0, text"}));
 }
 
+TEST(SpeosText, RefusesADescriptionOfTooManyLines) {
+    const std::string text =
+        replaced(brdf(), "8\ntwo\nline", "10001\n" + std::string(10'001, '\n'));
+    EXPECT_TRUE(refuses(parseSpeos(text, "in"), {"more than 10000 lines"}));
+}
+
 TEST(SpeosText, RefusesOtherSurfacesByName) {
     EXPECT_TRUE(refuses(
         parseSpeos("OPTIS - Simple scattering surface file v2.0\nScattering surface\n", "in"),

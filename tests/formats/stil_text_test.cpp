@@ -135,6 +135,17 @@ TEST(StilText, RefusesRangesThatTheTextCannotHold) {
     }
 }
 
+TEST(StilText, ReadsAHundredThousandPhisInNoTime) {
+    std::string text = replaced(small(), "end :\t-80", "end :\t270");
+    text = replaced(text, "Phi measure step :\t10", "Phi measure step :\t0.0036");
+    text = replaced(text, "beginning :\t-30", "beginning :\t0");
+    text = replaced(text, "Theta measure end :\t30", "Theta measure end :\t0");
+    std::string row = "0";
+    for (int i = 0; i <= 100'000; ++i) row += "\t1";
+    text = text.substr(0, text.find("-30\t1\t2")) + row + "\r";
+    EXPECT_EQ(parsed(text).content.blocks[0].azimuthDeg.size(), 100'000U);
+}
+
 TEST(StilText, RefusesATextCutAnywhereBeforeItsLastRow) {
     const std::string text = small();
     const std::size_t last = text.find("30\t5\t6") + std::string_view("30\t5\t").size();
