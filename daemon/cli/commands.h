@@ -104,6 +104,7 @@ Result<void> doctor(const CommonOptions& common);
 
 struct InfoOptions {
     std::string file;
+    std::string from;                ///< a format's name; empty: by the content
     std::string estimator = "none";  ///< else what it makes of the file, too
 };
 Result<void> info(const CommonOptions& common, const InfoOptions& options);

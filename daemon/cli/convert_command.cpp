@@ -47,6 +47,7 @@ Result<proc::ConversionWish> wishOf(const ConvertOptions& options) {
         options.to.empty() ? proc::formatToWrite(options.output) : proc::parseFormat(options.to);
     if (!to) return options.to.empty() ? to.error() : to.error().in("--to");
     wish.to = *to;
+    wish.anisotropic = options.output.extension() == ".anisotropicbsdf";
     if (!options.grid.empty()) {
         auto grid = proc::parseTargetGrid(options.grid);
         if (!grid) return grid.error();

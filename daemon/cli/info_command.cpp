@@ -7,10 +7,12 @@
 #include "daemon/budget_table.h"
 #include "daemon/cli/commands.h"
 #include "daemon/cli/estimator_facts.h"
+#include "daemon/cli/file_facts_json.h"
 #include "daemon/cli/output.h"
 #include "daemon/estimators.h"
 #include "proc/formats/file_degrees.h"
 #include "proc/formats/graw_exr.h"
+#include "proc/formats/sniff.h"
 #include "proc/optics/cell_grid.h"
 #include "proc/quality/verdict.h"
 
@@ -156,32 +158,71 @@ struct Info {
     Json file;
     std::vector<proc::StateBudget> budget;    ///< of a measured sample
     std::optional<EstimatorFacts> estimator;  ///< where one was asked for
+    std::optional<proc::FileFacts> values;    ///< of a file
 };
 
-Result<Info> infoOf(const CommonOptions& common, const InfoOptions& options) {
-    const std::string& file = options.file;
-    if (std::filesystem::path(file).extension() == ".graw") {
-        if (options.estimator != "none") {
-            return Error{ErrorKind::Usage,
-                         "info: '" + file + "' is a raw capture: it has no --estimator"};
-        }
-        const Result<proc::RawCapture> capture = proc::readGraw(file);
-        if (!capture) return capture.error();
-        return Info{rawJson(*capture), {}, {}};
-    }
-    const bool estimates = options.estimator != "none";
-    const Result<Estimated> opened = openSurface(file, common.store, options.estimator);
+Json aboutJson(const proc::Metadata& about) {
+    Json json = Json::object();
+    for (const auto& [name, value] : about.values) json[name] = value;
+    return json;
+}
+
+/// Of a format that is none of our own.
+Json otherJson(const proc::BrdfFile& file) {
+    return {{"title", factsOf(file.format).title},
+            {"about", aboutJson(file.about)},
+            {"comments", file.about.comments}};
+}
+
+Result<Info> infoOfModel(const CommonOptions& common, const InfoOptions& options) {
+    const Result<Estimated> opened =
+        openEstimated(options.file, common.store, {.name = options.estimator});
     if (!opened) return opened.error();
-    const Material& material = opened->material;
-    Json json = {{"kind", material.kind}};
-    json["incidences_deg"] = degreesOf(material.incidences());
-    json["bands"] = material.scatterer->bandCount() == BandCount::One ? 1 : 3;
-    if (material.sample != nullptr) json.update(sampleJson(*material.sample));
-    if (material.table != nullptr) json.update(tableJson(*material.table));
-    Info info{std::move(json), {}, {}};
-    if (material.sample != nullptr)
-        info.budget = proc::readBudget(material.sample->info.budgetJson);
-    if (estimates) info.estimator = estimatorFacts(*opened, options.estimator);
+    Info info{{{"kind", "model"}}, {}, {}, {}};
+    info.file["incidences_deg"] = degreesOf(opened->incidences());
+    info.file["bands"] = opened->scatterer->bandCount() == BandCount::One ? 1 : 3;
+    if (options.estimator != "none") info.estimator = estimatorFacts(*opened, options.estimator);
+    return info;
+}
+
+Result<Info> infoOfRaw(const std::filesystem::path& path, const InfoOptions& options) {
+    if (options.estimator != "none") {
+        return Error{ErrorKind::Usage,
+                     "info: '" + options.file + "' is a raw capture: it has no --estimator"};
+    }
+    const Result<proc::RawCapture> capture = proc::readGraw(path);
+    if (!capture) return capture.error();
+    return Info{rawJson(*capture), {}, {}, {}};
+}
+
+Result<Info> infoOf(const CommonOptions& common, const InfoOptions& options) {
+    if (options.file.starts_with("model:")) return infoOfModel(common, options);
+    const auto path = fileOf(options.file, common.store);
+    if (!path) return path.error();
+    const Result<proc::Format> format =
+        options.from.empty() ? proc::sniffFile(*path) : proc::parseFormat(options.from);
+    if (!format) return format.error();
+    if (*format == proc::Format::Graw) return infoOfRaw(*path, options);
+    Result<proc::BrdfFile> file = proc::readBrdf(*path, *format);
+    if (!file) return file.error();
+    Info info{{{"kind", name(*format)}}, {}, {}, proc::fileFacts(*file)};
+    info.file["incidences_deg"] = info.values->incidencesDeg;
+    info.file["bands"] = proc::channelsOf(*file).size();
+    const auto* sample = file->as<proc::SampleSet>();
+    const auto* table = file->as<proc::SpecularTable>();
+    if (sample != nullptr) {
+        info.file.update(sampleJson(*sample));
+        info.budget = proc::readBudget(sample->info.budgetJson);
+    } else if (table != nullptr) {
+        info.file.update(tableJson(*table));
+    } else {
+        info.file.update(otherJson(*file));
+    }
+    if (options.estimator != "none") {
+        const auto opened = estimated(std::move(*file), {.name = options.estimator});
+        if (!opened) return opened.error().in("info: '" + options.file + "'");
+        info.estimator = estimatorFacts(*opened, options.estimator);
+    }
     return info;
 }
 
@@ -193,20 +234,21 @@ Result<void> info(const CommonOptions& common, const InfoOptions& options) {
     if (common.json) {
         Json json = {{"schema", "gonio/info/1"}, {"file", options.file}};
         json.update(found->file);
+        if (found->values) json["values"] = toJson(*found->values);
         if (found->estimator) json["estimator"] = toJson(*found->estimator);
         printJson(json);
-    } else {
-        std::cout << "file: " << options.file << "\n";
-        Json plain = withReadableVerdicts(found->file);
-        const std::string budget = budgetTable(found->budget);
-        if (!budget.empty()) plain.erase("budget");
-        printPlain(plain, "");
-        if (!budget.empty()) {
-            std::cout << "budget, standard uncertainties, medians over cells and states:\n"
-                      << budget;
-        }
-        if (found->estimator) print(*found->estimator);
+        return {};
     }
+    std::cout << "file: " << options.file << "\n";
+    Json plain = withReadableVerdicts(found->file);
+    const std::string budget = budgetTable(found->budget);
+    if (!budget.empty()) plain.erase("budget");
+    printPlain(plain, "");
+    if (!budget.empty()) {
+        std::cout << "budget, standard uncertainties, medians over cells and states:\n" << budget;
+    }
+    if (found->values) printFacts(*found->values);
+    if (found->estimator) print(*found->estimator);
     return {};
 }
 

@@ -11,6 +11,7 @@ void Program::addFiles() {
     CLI::App* sub = command(
         *app, "info", "print what a file holds", [this] { return daemon::info(common, info); });
     sub->add_option("file", info.file, "a file, sample:NAME or model:SPEC")->required();
+    sub->add_option("--from", info.from, "the format, where the content does not tell");
     sub->add_option("--estimator",
                     info.estimator,
                     "what answers between and beyond its angles, too: auto, or a method by name");

@@ -18,7 +18,7 @@ Result<std::vector<ConvertedFile>> convertTo(const ConversionSource& source,
         case Format::Utia:
         case Format::Mbsdf: return toSpherical(source, wish);
         case Format::Merl: return toMerl(source, wish);
-        case Format::Rgl: break;
+        case Format::Rgl: return toRgl(source, wish);
         case Format::Bird:
         case Format::Astm:
         case Format::Pab:

@@ -36,6 +36,8 @@ struct ConversionWish {
     Format to = Format::Gonio;
     TargetGrid grid{};
     bool half = false;  ///< 16-bit floats, where the format has them
+    /// Speos: tables of anisotropy angles, as an .anisotropicbsdf holds them; else as a .brdf.
+    bool anisotropic = false;
 };
 
 struct ConvertedFile {

@@ -4,6 +4,8 @@
 
 #include "proc/export/conversion_steps.h"
 #include "proc/export/sample_fill.h"
+#include "proc/formats/bird.h"
+#include "proc/formats/scattered_csv.h"
 #include "proc/table/rows_of.h"
 
 namespace gonio::proc {
@@ -44,7 +46,13 @@ Result<Rows> rowsFor(const ConversionSource& source, const ConversionWish& wish)
     return answered(source, wish);
 }
 
-std::vector<ConvertedFile> written(const BrdfRows& rows, Format to, const Metadata& about);
+std::vector<ConvertedFile> one(Written file) {
+    return {ConvertedFile{"", std::move(file.bytes), std::move(file.loss)}};
+}
+
+std::vector<ConvertedFile> written(const BrdfRows& rows, Format to, const Metadata& about) {
+    return to == Format::Bird ? one(writeBird(rows, about)) : one(writeScatteredCsv(rows, about));
+}
 
 }  // namespace
 
@@ -61,15 +69,5 @@ Converted toRows(const ConversionSource& source, const ConversionWish& wish) {
     }
     return files;
 }
-
-namespace {
-
-std::vector<ConvertedFile> written(const BrdfRows& /*rows*/,
-                                   Format /*to*/,
-                                   const Metadata& /*about*/) {
-    return {};
-}
-
-}  // namespace
 
 }  // namespace gonio::proc

@@ -4,7 +4,9 @@
 
 #include "proc/export/conversion_steps.h"
 #include "proc/export/spherical_fill.h"
+#include "proc/formats/lighttools.h"
 #include "proc/formats/mbsdf.h"
+#include "proc/formats/speos.h"
 #include "proc/formats/utia.h"
 #include "proc/table/specular_fill.h"
 
@@ -54,9 +56,17 @@ void addTotals(SphericalTable& table, const ConversionSource& source) {
     }
 }
 
-Result<Written> written(const SphericalTable& table, Format to, const Metadata& about) {
-    if (to == Format::Utia) return writeUtia(table, about);
-    return writeMbsdf(table, about);
+Result<Written> written(const SphericalTable& table,
+                        const ConversionWish& wish,
+                        const Metadata& about) {
+    switch (wish.to) {
+        case Format::LightTools: return writeLightTools(table, about);
+        case Format::Speos:
+            return table.isotropic() && !wish.anisotropic ? writeSpeosBrdf(table, about)
+                                                          : writeSpeosAnisotropic(table, about);
+        case Format::Utia: return writeUtia(table, about);
+        default: return writeMbsdf(table, about);
+    }
 }
 
 Converted one(Result<Written> file) {
@@ -69,13 +79,13 @@ Converted one(Result<Written> file) {
 Converted toSpherical(const ConversionSource& source, const ConversionWish& wish) {
     const auto* table = mayCopy(source, wish) ? source.file->as<SphericalTable>() : nullptr;
     const bool own = !hasOwnGrid(wish.to) || (source.file && source.file->format == wish.to);
-    if (table != nullptr && own) return one(written(*table, wish.to, source.about));
+    if (table != nullptr && own) return one(written(*table, wish, source.about));
     if (auto answers = mustAnswer(source, wish.to); !answers) return answers.error();
     Result<SphericalTable> grid = gridFor(source, wish);
     if (!grid) return grid.error();
     FilledSpherical filled = fillSpherical(*allBands(source), std::move(*grid));
     if (!hasOwnGrid(wish.to)) addTotals(filled.table, source);
-    Converted files = one(written(filled.table, wish.to, source.about));
+    Converted files = one(written(filled.table, wish, source.about));
     if (!files) return files;
     addPlainLosses(files->front().loss, source);
     addResampling(

@@ -5,13 +5,20 @@
 #include <cmath>
 #include <utility>
 
+#include "proc/formats/bird.h"
 #include "proc/formats/file_bytes.h"
 #include "proc/formats/gonio_exr.h"
+#include "proc/formats/lighttools.h"
 #include "proc/formats/mbsdf.h"
 #include "proc/formats/merl.h"
 #include "proc/formats/named_band.h"
+#include "proc/formats/rgl.h"
+#include "proc/formats/scattered_csv.h"
 #include "proc/formats/sniff.h"
+#include "proc/formats/speos.h"
+#include "proc/formats/stil_text.h"
 #include "proc/formats/utia.h"
+#include "proc/formats/words.h"
 #include "proc/formats/zemax.h"
 
 namespace gonio::proc {
@@ -52,11 +59,22 @@ auto parseRawUtia(std::string_view bytes, std::string_view name) {
     return parseUtia(bytes, name, UtiaScale::Raw);
 }
 
+/// Two texts go by the name: LightTools' own, and the export of an instrument.
+auto parseAnyLightTools(std::string_view text, std::string_view name) {
+    const bool stil = lower(text.substr(0, 4096)).find("intensity brdf") != std::string::npos;
+    return stil ? parseStilText(text, name) : parseLightTools(text, name);
+}
+
 constexpr std::array kCodecs{Codec{Format::Gonio, ofGonio},
                              Codec{Format::Zemax, ofZemax},
+                             Codec{Format::LightTools, of<parseAnyLightTools>},
                              Codec{Format::Merl, of<parseMerl>},
                              Codec{Format::Utia, of<parseRawUtia>},
-                             Codec{Format::Mbsdf, of<parseMbsdf>}};
+                             Codec{Format::Rgl, of<parseRgl>},
+                             Codec{Format::Bird, of<parseBird>},
+                             Codec{Format::Speos, of<parseSpeos>},
+                             Codec{Format::Mbsdf, of<parseMbsdf>},
+                             Codec{Format::Csv, of<parseScatteredCsv>}};
 
 /// Of one channel: what its name, its wavelength or the file's name says.
 std::optional<Band> soleBand(const std::vector<Channel>& channels,
@@ -101,6 +119,7 @@ std::vector<Channel> channelsOf(const BrdfFile& file) {
     const bool bands = file.as<SampleSet>() != nullptr || file.as<HalfDifferenceTable>() != nullptr;
     if (bands) return Channel::ofBands();
     if (const auto* spherical = file.as<SphericalTable>()) return spherical->channels;
+    if (const auto* tensor = file.as<TensorTable>()) return tensor->channels;
     if (const auto* rows = file.as<BrdfRows>()) return rows->channels;
     const auto& table = *file.as<SpecularTable>();
     if (table.colour == TableColour::Xyz) return {{"X", {}}, {"Y", {}}, {"Z", {}}};

@@ -17,11 +17,12 @@
 #include "proc/table/sample_set.h"
 #include "proc/table/specular_table.h"
 #include "proc/table/spherical_table.h"
+#include "proc/table/tensor_table.h"
 
 namespace gonio::proc {
 
 using BrdfContent =
-    std::variant<SampleSet, SpecularTable, SphericalTable, HalfDifferenceTable, BrdfRows>;
+    std::variant<SampleSet, SpecularTable, SphericalTable, HalfDifferenceTable, TensorTable, BrdfRows>;
 
 struct BrdfFile {
     Format format = Format::Gonio;

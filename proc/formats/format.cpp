@@ -18,7 +18,7 @@ constexpr std::array<FormatFacts, kFormatCount> kFormats{{
     {Format::Rgl, "rgl", "RGL tensor file", ".bsdf"},
     {Format::Bird, "bird", "BiRD BRDF", ".json"},
     {Format::Astm, "astm", "ASTM table", ".astm"},
-    {Format::Speos, "speos", "Speos BSDF", ".anisotropicbsdf"},
+    {Format::Speos, "speos", "Speos BSDF", ".brdf"},
     {Format::Mbsdf, "mbsdf", "NVIDIA measured BSDF", ".mbsdf"},
     {Format::Ssdd, "ssdd", "SSDD table", ".ssdd"},
     {Format::Pab, "pab", "pab-opto table", ".pab"},

@@ -5,6 +5,7 @@
 #include "proc/table/sample_lookup.h"
 #include "proc/table/specular_lookup.h"
 #include "proc/table/spherical_lookup.h"
+#include "proc/table/tensor_bsdf.h"
 
 namespace gonio::proc {
 namespace {
@@ -33,6 +34,12 @@ Result<Opened> over(HalfDifferenceTable table) {
     Result<HalfDifferenceLookup> lookup = HalfDifferenceLookup::over(std::move(table));
     if (!lookup) return lookup.error();
     return Opened(std::make_unique<HalfDifferenceLookup>(std::move(*lookup)));
+}
+
+Result<Opened> over(TensorTable table) {
+    Result<TensorBsdf> tensor = TensorBsdf::over(std::move(table));
+    if (!tensor) return tensor.error();
+    return Opened(std::make_unique<TensorBsdf>(std::move(*tensor)));
 }
 
 Result<Opened> over(const BrdfRows& /*rows*/) {
