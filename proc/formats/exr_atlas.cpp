@@ -140,6 +140,11 @@ Result<Written> encodeExrAtlas(std::span<const AtlasSample> samples,
     if (options.half) narrow(part, out.loss);
     appendAttributes(part, samples, layout, out.loss);
     auto bytes = encodeExr(std::span(&part, 1));
+    const std::size_t pixelBytes = part.size.pixels() * part.floats.size() * sizeof(float);
+    if (bytes && pixelBytes > mostPixelBytes(bytes->size())) {
+        part.packed = false;
+        bytes = encodeExr(std::span(&part, 1));
+    }
     if (!bytes) return bytes.error().in("exr-atlas");
     out.bytes = std::move(*bytes);
     return out;

@@ -241,10 +241,9 @@ private:
 
 Result<std::vector<FileRead<SpecularTable>>> decodeExrAtlas(std::string_view bytes,
                                                             std::string_view name) {
-    constexpr std::size_t kAlways = std::size_t{16} << 20;
     auto parts = decodeExr(
         bytes,
-        {.largest = {kMostSide, kMostSide}, .parts = 1, .bytes = kAlways + 6 * bytes.size()});
+        {.largest = {kMostSide, kMostSide}, .parts = 1, .bytes = mostPixelBytes(bytes.size())});
     if (!parts) return parts.error().in("exr-tiles: " + std::string(name));
     return Reader(std::move(parts->front()), name).read();
 }

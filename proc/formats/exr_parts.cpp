@@ -98,7 +98,7 @@ Imf::Header headerOf(const ExrPart& part, const Imath::Box2i& display) {
     header.displayWindow() = display;
     header.setName(part.name);
     header.setType(Imf::SCANLINEIMAGE);
-    header.compression() = Imf::ZIP_COMPRESSION;
+    header.compression() = part.packed ? Imf::ZIP_COMPRESSION : Imf::NO_COMPRESSION;
     header.zipCompressionLevel() = 1;  // noise hardly gets smaller with more work
     for (const auto& [key, value] : part.text) header.insert(key, Imf::StringAttribute(value));
     for (const auto& [key, value] : part.numbers) {

@@ -28,6 +28,7 @@ struct ExrPart {
     std::map<std::string, std::vector<float>> numbers{};  ///< attributes of several floats
     /// The floats are stored in 16 bits, rounded to nearest; decoding widens them exactly.
     bool half = false;
+    bool packed = true;                                        ///< by ZIP; not read back
     std::map<std::string, std::vector<float>> floats;          ///< row-major, size.pixels() long
     std::map<std::string, std::vector<std::uint32_t>> counts;  ///< likewise
 };

@@ -28,6 +28,8 @@ ExrTileLayout chosenLayout(ExrTileLayout layout) {
         const double columns = std::round(std::sqrt(static_cast<double>(count) * heightToWidth));
         return static_cast<std::size_t>(std::clamp(columns, 1.0, static_cast<double>(count)));
     };
+    layout.columns = std::min(layout.columns, layout.tiles);
+    layout.innerColumns = std::min(layout.innerColumns, layout.samples);
     if (layout.innerColumns == 0) layout.innerColumns = nearlySquare(layout.samples, 1);
     if (layout.columns == 0) {
         const auto part = [](std::size_t pixels, std::size_t parts) {

@@ -28,7 +28,7 @@ struct ExrTileLayout {
     [[nodiscard]] std::size_t offset(std::size_t tile, std::size_t sample, std::size_t row) const;
 };
 
-/// With columns chosen where they are 0.
+/// With columns chosen where they are 0, and no more of them than there is to stand beside.
 [[nodiscard]] ExrTileLayout chosenLayout(ExrTileLayout layout);
 
 /// The layout of a picture whose columns are not said: nothing unless there is one only of which a

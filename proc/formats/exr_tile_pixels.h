@@ -9,6 +9,12 @@
 
 namespace gonio::proc {
 
+/// The most bytes of pixels, as floats, that are read from a file of a size.
+[[nodiscard]] constexpr std::size_t mostPixelBytes(std::size_t fileBytes) {
+    constexpr std::size_t kAlways = std::size_t{8} << 20U;
+    return kAlways + 6 * fileBytes;
+}
+
 /// Adds the channels R, G, B, or Y where all samples are monochrome. The part's size is the
 /// layout's. What is not finite in a float, or below the horizon, is 0; the former is counted.
 void paintSamples(ExrPart& part,

@@ -13,8 +13,8 @@
 // A missing node is 0, as in the table. Not in the picture: several rotations, XYZ. A plane-
 // symmetrical table is written with both sides, and read as one where both are the same.
 //
-// A picture of more than 16 MiB of floats and six times the file is refused: more than measured
-// data ever shrink.
+// A picture of more than 8 MiB of floats and six times the file is refused: more than measured data
+// ever shrink. What would shrink so far is written without compression.
 
 #include <string_view>
 

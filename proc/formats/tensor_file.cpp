@@ -1,5 +1,6 @@
 #include "proc/formats/tensor_file.h"
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <optional>
@@ -38,14 +39,24 @@ public:
             if (!names_.insert(field->name).second) {
                 return fail("field " + shown(field->name) + " is given twice");
             }
+            end_ = std::max(end_, place_ + field->data.size());
             fields.push_back(std::move(*field));
         }
-        return fields;
+        end_ = std::max(end_, at_);
+        return nothingBehind()
+                   ? Result(std::move(fields))
+                   : fail(std::to_string(bytes_.size() - end_) + " bytes behind the last field");
     }
 
 private:
     [[nodiscard]] Error fail(const std::string& what) const {
         return {ErrorKind::File, "rgl: " + std::string(name_) + ": " + what};
+    }
+
+    /// Zeros up to the next multiple of 8 are padding.
+    [[nodiscard]] bool nothingBehind() const {
+        const std::string_view rest = bytes_.substr(end_);
+        return rest.size() < kAlignment && rest.find_first_not_of('\0') == std::string_view::npos;
     }
 
     template <class T>
@@ -80,7 +91,7 @@ private:
         return withData(std::move(field), *place);
     }
 
-    [[nodiscard]] Result<TensorField> withData(TensorField field, std::uint64_t place) const {
+    [[nodiscard]] Result<TensorField> withData(TensorField field, std::uint64_t place) {
         std::size_t size = bytesOf(field.type);
         bool fits = true;
         for (const std::size_t extent : field.shape) {
@@ -92,11 +103,13 @@ private:
                         ", the file has " + std::to_string(bytes_.size()));
         }
         field.data = bytes_.substr(place, size);
+        place_ = place;
         return field;
     }
 
     std::string_view bytes_, name_;
     std::size_t at_ = 0;
+    std::size_t place_ = 0, end_ = 0;  ///< of the field's data, of all fields'
     std::set<std::string> names_;
 };
 

@@ -4,7 +4,7 @@
 // dimensions, type, place in the file and shape; then the data, C order, each at a multiple of 8.
 //
 // Reading allocates no data: fields are views of the bytes. Every field lies within the bytes, the
-// product of its shape does not overflow, and names differ.
+// product of its shape does not overflow, names differ, and nothing but padding is behind the last.
 
 #include <cstdint>
 #include <string>

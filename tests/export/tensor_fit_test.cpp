@@ -208,6 +208,25 @@ TEST(TensorFit, FillsWhatHasNoAnswerAndCountsIt) {
     EXPECT_EQ(back.answer({at(20, 0), at(30, 100)}).f[Band::B], 0);
 }
 
+TEST(TensorFit, KeepsOneBandAsOneChannel) {
+    struct OneBand : Scatterer {
+        [[nodiscard]] Answer answer(const LightView&) const override {
+            Answer answer;
+            answer.f = LedBands::all(0.25);
+            return answer;
+        }
+        [[nodiscard]] BandCount bandCount() const override { return BandCount::One; }
+    };
+    const FittedTensor fitted = fitTensor(OneBand{});
+    ASSERT_EQ(fitted.table.channels.size(), 1U);
+    const auto alone = TensorBsdf::over(fitted.table);
+    ASSERT_TRUE(alone);
+    EXPECT_EQ(alone->bandCount(), BandCount::One);
+    const LightView pair{at(20, 0), at(30, 100)};
+    EXPECT_EQ(throughFile(fitted.table).answer(pair).f, alone->answer(pair).f);
+    EXPECT_NEAR(alone->answer(pair).f[Band::B], 0.25, 1e-3);
+}
+
 TEST(TensorFit, WritesBandsAsWavelengthsWhereAsked) {
     const auto truth = model("lambert,albedo=0.3/0.2/0.1");
     const FittedTensor fitted = fitTensor(*truth, {.spectral = true});

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -164,6 +165,24 @@ TEST(ExrTiles, HoldBothSidesOfAPlaneSymmetricalTable) {
     EXPECT_EQ(read->warnings.size(), 1U);
 }
 
+TEST(ExrTiles, StandBesideEachOtherAsAsked) {
+    const SpecularTable table =
+        filled(*model("lambert,albedo=0.3/0.2/0.1+ggx,alpha=0.2,f0=0.5"), {8, 4});
+    for (const std::size_t columns : {1U, 2U, 3U, 4U, 100U}) {
+        const auto written = encodeExrTiles(table, {}, {.columns = columns});
+        ASSERT_TRUE(written);
+        const auto parts = decodeExr(written->bytes, {.largest = {99, 99}, .parts = 1});
+        ASSERT_TRUE(parts);
+        EXPECT_EQ(parts->front().size.width,
+                  8 * static_cast<int>(std::min<std::size_t>(columns, 4)));
+        const SpecularTable back = decoded(written).content;
+        for (std::size_t i = 0; i < table.nodeCount(); ++i) {
+            const double f = table.planes[2].f[i];
+            ASSERT_NEAR(back.planes[2].f[i], f, 1e-7 * f);
+        }
+    }
+}
+
 TEST(ExrTiles, KeepMasks) {
     SpecularTable table = filled(*model("lambert,albedo=0.3/0.2/0.1"), {8, 4});
     const TableNode gone{0, 1, 2, 1};
@@ -273,6 +292,22 @@ TEST(ExrTiles, RefuseTablesThatTheyCannotHold) {
     EXPECT_TRUE(refused([](SpecularTable& t) { t.azimuthDeg[3] += 1; }));
     EXPECT_TRUE(refused([](SpecularTable& t) { t.planes.pop_back(); }));
     EXPECT_TRUE(refused([](SpecularTable& t) { t.planes[0].f.pop_back(); }));
+}
+
+TEST(ExrTiles, ReadBackAPictureThatShrinksToNothing) {
+    SpecularTable table;
+    const SpecularGrid grid = exrTileGrid({0, 10, 20, 30, 40, 50, 60, 70}, {720, 360});
+    table.symmetry = grid.symmetry;
+    table.incidenceDeg = grid.incidenceDeg;
+    table.azimuthDeg = grid.azimuthDeg;
+    table.radialDeg = grid.radialDeg;
+    table.colour = TableColour::LedBands;
+    table.planes.assign(
+        3,
+        {.f = std::vector<double>(table.nodeCount(), 0.25), .tis = std::vector<double>(8, 0.75)});
+    const auto written = encodeExrTiles(table, {});
+    EXPECT_GT(written->bytes.size(), table.nodeCount() * 3 / 6);
+    EXPECT_EQ(encodeExrTiles(decoded(written).content, {})->bytes, written->bytes);
 }
 
 TEST(ExrAtlas, HoldsSamplesInTheirOrder) {

@@ -75,7 +75,7 @@ TEST(TensorFile, RefusesFieldsThatTheFileCannotHold) {
         return bytes + std::string(8, '\0');
     };
     constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
-    EXPECT_TRUE(parseTensorFile(one({2}, 0, 10), "t"));
+    EXPECT_TRUE(parseTensorFile(one({8}, 40, 1), "t"));
     EXPECT_TRUE(refuses(parseTensorFile(one({kMost}, 0, 10), "t"), {"rgl: t: field 'a'"}));
     EXPECT_TRUE(refuses(parseTensorFile(one({1ULL << 32, 1ULL << 32}, 0, 1), "t")));
     EXPECT_TRUE(refuses(parseTensorFile(one({2}, kMost, 10), "t")));
@@ -171,6 +171,9 @@ TEST(Rgl, RefusesDamage) {
     EXPECT_TRUE(parseRgl(sound, "t.bsdf"));
     EXPECT_TRUE(refuses(parseRgl("", "t.bsdf"), {"rgl: t.bsdf: no tensor file"}));
     EXPECT_TRUE(refuses(parseRgl("Source Measured\n", "t.bsdf"), {"no tensor file"}));
+    EXPECT_TRUE(parseRgl(sound + std::string(4, '\0'), "t.bsdf"));
+    EXPECT_TRUE(refuses(parseRgl(sound + "x", "t.bsdf"), {"1 bytes behind the last field"}));
+    EXPECT_TRUE(refuses(parseRgl(sound + std::string(8, '\0'), "t.bsdf"), {"8 bytes behind"}));
     std::string version = sound;
     version[12] = 2;
     EXPECT_TRUE(refuses(parseRgl(version, "t.bsdf"), {"version"}));
