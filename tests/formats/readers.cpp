@@ -17,6 +17,7 @@
 #include "proc/formats/pab.h"
 #include "proc/formats/points_csv.h"
 #include "proc/formats/rgl.h"
+#include "proc/formats/rt300s.h"
 #include "proc/formats/scattered_csv.h"
 #include "proc/formats/sniff.h"
 #include "proc/formats/speos.h"
@@ -124,6 +125,9 @@ Complaint exrAtlas(Bytes bytes) {
         return proc::encodeExrAtlas(samples);
     });
 }
+Complaint rt300s(Bytes bytes) {
+    return proc::isJdv(bytes) ? only(bytes, proc::parseJdv) : only(bytes, proc::parseRt300sCsv);
+}
 Complaint klems(Bytes bytes) { return only(bytes, proc::parseKlems); }
 Complaint stil(Bytes bytes) { return only(bytes, proc::parseStilText); }
 Complaint points(Bytes bytes) { return only(bytes, proc::parsePoints); }
@@ -152,6 +156,7 @@ constexpr std::array kReaders{
     Reader{"csv", true, soundCsv, csv},
     Reader{"exr-tiles", false, soundExrTiles, exrTiles},
     Reader{"exr-atlas", false, soundExrAtlas, exrAtlas},
+    Reader{"rt300s", true, soundRt300s, rt300s},
     Reader{"klems", true, soundKlems, klems},
     Reader{"stil", true, soundStil, stil},
     Reader{"points", true, soundPoints, points},

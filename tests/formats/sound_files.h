@@ -26,6 +26,7 @@ using Files = std::vector<std::string>;
 [[nodiscard]] Files soundAlta();
 [[nodiscard]] Files soundExrTiles();
 [[nodiscard]] Files soundExrAtlas();
+[[nodiscard]] Files soundRt300s();
 [[nodiscard]] Files soundKlems();
 [[nodiscard]] Files soundStil();
 [[nodiscard]] Files soundPoints();
