@@ -14,7 +14,6 @@ namespace {
 
 /// Of any file that was made to be read; a hostile one of a megabyte has no more memory than that.
 constexpr std::size_t kMostColumns = 4096;
-constexpr std::size_t kMostComments = 10'000;
 
 constexpr std::array<std::string_view, 4> kAngles{"theta_i", "phi_i", "theta_o", "phi_o"};
 constexpr std::array<std::string_view, 6> kVectors{"wi_x", "wi_y", "wi_z", "wo_x", "wo_y", "wo_z"};

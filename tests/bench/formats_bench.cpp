@@ -11,7 +11,10 @@
 #include <stdexcept>
 #include <string>
 
+#include "proc/formats/bird.h"
 #include "proc/formats/gonio_exr.h"
+#include "proc/formats/merl.h"
+#include "proc/formats/rgl.h"
 #include "proc/formats/zemax.h"
 #include "tests/support/sample_sets.h"
 
@@ -128,6 +131,64 @@ SampleSet gonioSample() {
     });
 }
 
+/// MERL's own size; every value there.
+HalfDifferenceTable merlTable() {
+    HalfDifferenceTable table;
+    std::mt19937_64 random(1);
+    for (auto& plane : table.planes) {
+        for (std::size_t i = 0; i < table.nodeCount(); ++i) {
+            plane.push_back(noisy(static_cast<double>(i % 90), random));
+        }
+    }
+    return table;
+}
+
+/// As large as RGL's isotropic rgb files: 8 incidences, 128 x 128 visible normals, 32 x 32 values.
+TensorTable rglTable() {
+    std::mt19937_64 random(1);
+    const auto grid = [&](std::size_t slices, std::size_t width, std::size_t height) {
+        GridStack stack{.width = width, .height = height, .values = {}};
+        for (std::size_t i = 0; i < slices * width * height; ++i) {
+            stack.values.push_back(static_cast<float>(noisy(30, random)));
+        }
+        return stack;
+    };
+    TensorTable table;
+    table.phiIn = {0};
+    for (int k = 0; k < 8; ++k) table.thetaIn.push_back(0.2F * static_cast<float>(k));
+    table.ndf = table.sigma = grid(1, 128, 2);
+    table.vndf = grid(8, 128, 128);
+    table.luminance = grid(8, 32, 32);
+    table.channels = {{"R", {}}, {"G", {}}, {"B", {}}};
+    table.values = grid(24, 32, 32);
+    return table;
+}
+
+/// 4 incidences x 25 000 directions x 3 bands: 300 000 entries, with uncertainties and flags or
+/// not.
+BrdfRows birdRows(bool measured) {
+    std::mt19937_64 random(1);
+    BrdfRows rows;
+    rows.channels = Channel::ofBands();
+    for (const double incidence : {0.0, 20.0, 40.0, 60.0}) {
+        for (int i = 0; i < 25'000; ++i) {
+            const double theta = 0.003 * i;
+            rows.pairs.push_back(
+                {.in = Direction::fromSpherical(Radians::fromDegrees(incidence), 0_deg),
+                 .out = Direction::fromSpherical(Radians::fromDegrees(theta),
+                                                 Radians::fromDegrees(std::fmod(137.5 * i, 360)))});
+            for (int band = 0; band < 3; ++band) {
+                rows.f.push_back(noisy(std::abs(theta - incidence), random));
+                if (!measured) continue;
+                rows.uRandom.push_back(0.01 * rows.f.back());
+                rows.uSystematic.push_back(0.02 * rows.f.back());
+                rows.flags.push_back(Flags{Flag::Measured});
+            }
+        }
+    }
+    return rows;
+}
+
 void registerAll() {
     for (const int digits : {7, 0}) {
         measure(
@@ -141,6 +202,23 @@ void registerAll() {
         gonioSample,
         [](const SampleSet& sample) { return good(encodeGonio(sample)); },
         [](std::string_view bytes) { return decodeGonio(bytes, "in"); });
+    measure(
+        "merl 90x90x180",
+        merlTable,
+        [](const HalfDifferenceTable& table) { return writeMerl(table).bytes; },
+        [](std::string_view bytes) { return parseMerl(bytes, "in"); });
+    measure(
+        "rgl 8 incidences rgb",
+        rglTable,
+        [](const TensorTable& table) { return good(writeRgl(table)).bytes; },
+        [](std::string_view bytes) { return parseRgl(bytes, "in"); });
+    for (const bool measured : {false, true}) {
+        measure(
+            std::string("bird 300 000 rows") + (measured ? " with u and flags" : ""),
+            [=] { return birdRows(measured); },
+            [](const BrdfRows& rows) { return writeBird(rows, {}).bytes; },
+            [](std::string_view bytes) { return parseBird(bytes, "in"); });
+    }
 }
 
 }  // namespace

@@ -10,6 +10,11 @@ namespace {
 
 constexpr std::size_t kMegabyte = 1'000'000;
 
+/// Of every kind of text, and what nests in some.
+constexpr std::string_view kWords[] = {"[",  "{\"a\":", "<a>",  "(",         "#",   "\"", "\\",
+                                       "\n", "\r",      "\t",   ",",         ";",   "1 ", "1\n",
+                                       "1,", "&",       "<!--", "a=\"b\"\n", "[1,", "- "};
+
 struct Span {
     std::size_t begin = 0, end = 0;
 };
@@ -186,22 +191,26 @@ std::vector<Damaged> withBadWords(std::string_view sound) {
 }
 
 std::vector<Damaged> withAMegabyteOfOne(std::string_view sound) {
-    std::vector<std::string> words{"[",  "{\"a\":", "<a>",  "(",         "#",   "\"", "\\",
-                                   "\n", "\r",      "\t",   ",",         ";",   "1 ", "1\n",
-                                   "1,", "&",       "<!--", "a=\"b\"\n", "[1,", "- "};
+    std::vector<std::string> words(std::begin(kWords), std::end(kWords));
     for (const std::string& word : wordsOf(sound)) {
-        if (words.size() < 40) words.push_back(word + " ");
-        if (words.size() < 60) words.push_back(word + "\n");
+        if (words.size() < 24) words.push_back(word + (words.size() % 2 == 0 ? " " : "\n"));
     }
     std::vector<Damaged> all;
     const std::size_t line = sound.find('\n', sound.size() / 3);
     const std::size_t middle = line == std::string_view::npos ? sound.size() / 2 : line + 1;
     for (const std::string& word : words) {
         const std::string many = repeated(word);
-        all.push_back({"a megabyte of " + inQuotes(word), many});
         all.push_back({"a megabyte of " + inQuotes(word) + " behind", std::string(sound) + many});
         all.push_back(
             {"a megabyte of " + inQuotes(word) + " within", with(sound, {middle, middle}, many)});
+    }
+    return all;
+}
+
+std::vector<Damaged> megabytesOfOne() {
+    std::vector<Damaged> all;
+    for (const std::string_view word : kWords) {
+        all.push_back({"a megabyte of " + inQuotes(word), repeated(word)});
     }
     return all;
 }

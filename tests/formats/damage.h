@@ -22,7 +22,9 @@ struct Damaged {
 [[nodiscard]] std::vector<Damaged> withBadLines(std::string_view sound);
 /// Words of the first two kilobytes, and some after, that are 0, -1, the largest, NaN.
 [[nodiscard]] std::vector<Damaged> withBadWords(std::string_view sound);
-/// A megabyte of one word, of the file's own or one that nests, alone, after the file and within.
+/// A megabyte of one word, of the file's own or one that nests, after the file and within.
 [[nodiscard]] std::vector<Damaged> withAMegabyteOfOne(std::string_view sound);
+/// Nothing but a megabyte of one word.
+[[nodiscard]] std::vector<Damaged> megabytesOfOne();
 
 }  // namespace gonio::test
