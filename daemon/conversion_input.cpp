@@ -4,6 +4,8 @@
 #include "daemon/material.h"
 #include "proc/export/cosine.h"
 #include "proc/export/source_of.h"
+#include "proc/formats/file_bytes.h"
+#include "proc/formats/rt300s_brdf.h"
 
 namespace gonio::daemon {
 namespace {
@@ -27,6 +29,47 @@ Result<OpenedConversion> ofFormula(const ConversionInput& input) {
     return OpenedConversion{proc::sourceOf(model->scatterer, std::move(about)), spec, {}};
 }
 
+Result<proc::FileRead<proc::Rt300sScan>> readScan(const std::filesystem::path& path) {
+    const Result<std::string> text = proc::readFile(path);
+    if (!text) return text.error();
+    return proc::parseRt300sCsv(*text, path.string());
+}
+
+/// Readings, those of repeats beside them, less those of the empty stage.
+Result<proc::BrdfFile> lessBlack(const ConversionInput& input, const std::filesystem::path& path) {
+    std::vector<std::filesystem::path> paths{path};
+    paths.insert(paths.end(), input.repeats.begin(), input.repeats.end());
+    std::vector<proc::Rt300sScan> scans;
+    proc::BrdfFile file{.format = proc::Format::Rt300s};
+    for (const auto& one : paths) {
+        auto scan = readScan(one);
+        if (!scan) return scan.error();
+        if (scans.empty()) file.about = std::move(scan->about);
+        for (const std::string& warning : scan->warnings) {
+            file.warnings.push_back(one.filename().string() + ": " + warning);
+        }
+        scans.push_back(std::move(scan->content));
+    }
+    const auto black = readScan(input.black);
+    if (!black) return black.error();
+    auto made = proc::rt300sBrdf(scans, black->content);
+    if (!made) return made.error().in(path.string());
+    for (std::string& warning : proc::warningsOf(*made))
+        file.warnings.push_back(std::move(warning));
+    file.content = std::move(made->table);
+    file.about.set(proc::key::kReference, "black: " + input.black.filename().string());
+    return file;
+}
+
+Result<proc::BrdfFile> readFor(const ConversionInput& input, const std::filesystem::path& path) {
+    if (!input.black.empty()) return lessBlack(input, path);
+    if (!input.repeats.empty()) {
+        return Error{ErrorKind::Usage,
+                     "--repeat is for RT-300S readings, beside --black BLANK.csv"};
+    }
+    return proc::readBrdf(path, input.from);
+}
+
 }  // namespace
 
 Result<OpenedConversion> openConversion(const ConversionInput& input,
@@ -34,7 +77,7 @@ Result<OpenedConversion> openConversion(const ConversionInput& input,
     if (input.f.starts_with(kModel)) return ofFormula(input);
     const Result<std::filesystem::path> path = fileOf(input.f, store);
     if (!path) return path.error();
-    Result<proc::BrdfFile> file = proc::readBrdf(*path, input.from);
+    Result<proc::BrdfFile> file = readFor(input, *path);
     if (!file) return file.error();
     const std::string named = "'" + input.f + "'";
     if (input.cosine) {

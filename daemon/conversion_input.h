@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "proc/core/result.h"
 #include "proc/export/band_choice.h"

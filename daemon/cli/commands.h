@@ -156,8 +156,10 @@ struct ConvertOptions {
     std::string bands;   ///< of r, g, b with commas, or srgb; empty: all
     std::string grid;    ///< incidences and step of a table; empty: the usual ones
     std::string cosine;  ///< yes, no: whether the values hold it; empty: as the file says
-    std::string estimator = "none";  ///< else it answers a table's directions
-    bool half = false;               ///< 16-bit floats where the format has them
+    std::string estimator = "none";              ///< else it answers a table's directions
+    bool half = false;                           ///< 16-bit floats where the format has them
+    std::filesystem::path black;                 ///< RT-300S readings of the empty stage
+    std::vector<std::filesystem::path> repeats;  ///< more readings of the same sample
 };
 Result<void> convert(const CommonOptions& common, const ConvertOptions& options);
 

@@ -24,7 +24,10 @@ Result<std::optional<bool>> parseCosine(const std::string& text) {
 }
 
 Result<ConversionInput> inputOf(const ConvertOptions& options) {
-    ConversionInput input{.f = options.input, .estimator = options.estimator};
+    ConversionInput input{.f = options.input,
+                          .estimator = options.estimator,
+                          .black = options.black,
+                          .repeats = options.repeats};
     if (!options.from.empty()) {
         const auto from = proc::parseFormat(options.from);
         if (!from) return from.error().in("--from");

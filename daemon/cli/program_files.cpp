@@ -94,6 +94,8 @@ void Program::addFiles() {
         convert.estimator,
         "what answers a table's directions: none (what was measured), auto, or by name");
     sub->add_flag("--half", convert.half, "16-bit floats, where the format has them");
+    sub->add_option("--black", convert.black, "RT-300S readings of the empty stage, taken off");
+    sub->add_option("--repeat", convert.repeats, "more RT-300S readings of the same sample");
 
     sub = command(*app, "atlas", "several samples as one EXR picture for shaders", [this] {
         return daemon::atlas(common, atlas);

@@ -19,6 +19,7 @@
 #include "proc/formats/named_band.h"
 #include "proc/formats/pab.h"
 #include "proc/formats/rgl.h"
+#include "proc/formats/rt300s_brdf.h"
 #include "proc/formats/scattered_csv.h"
 #include "proc/formats/sniff.h"
 #include "proc/formats/speos.h"
@@ -96,6 +97,21 @@ Result<BrdfFile> ofAtlas(std::string_view bytes, std::string_view name) {
                     .warnings = std::move(one.warnings)};
 }
 
+/// An export of values; readings are no BRDF before black is taken off.
+Result<BrdfFile> ofRt300s(std::string_view bytes, std::string_view name) {
+    if (!isJdv(bytes)) {
+        return Error{ErrorKind::Usage,
+                     std::string(name) +
+                         ": readings of an RT-300S are a BRDF once those of the "
+                         "empty stage are taken off: --black BLANK.csv"};
+    }
+    auto read = parseJdv(bytes, name);
+    if (!read) return read.error();
+    return BrdfFile{.content = tableOfJdv(read->content),
+                    .about = std::move(read->about),
+                    .warnings = std::move(read->warnings)};
+}
+
 constexpr std::array kCodecs{Codec{Format::Gonio, ofGonio},
                              Codec{Format::Zemax, ofZemax},
                              Codec{Format::LightTools, of<parseAnyLightTools>},
@@ -112,6 +128,7 @@ constexpr std::array kCodecs{Codec{Format::Gonio, ofGonio},
                              Codec{Format::Csv, of<parseScatteredCsv>},
                              Codec{Format::ExrTiles, of<decodeExrTiles>},
                              Codec{Format::ExrAtlas, ofAtlas},
+                             Codec{Format::Rt300s, ofRt300s},
                              Codec{Format::Klems, of<parseKlems>}};
 
 /// Of one channel: what its name, its wavelength or the file's name says.

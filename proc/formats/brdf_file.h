@@ -48,7 +48,7 @@ struct BrdfFile {
 };
 
 /// The bytes of a file of this format; `name` stands in errors. A File error for a raw capture,
-/// which is no BRDF yet.
+/// which is no BRDF yet; a Usage error for readings that need a black reference.
 [[nodiscard]] Result<BrdfFile> decodeBrdf(Format format,
                                           std::string_view bytes,
                                           std::string_view name);

@@ -7,7 +7,7 @@
 #include "proc/optics/cell_grid.h"
 #include "proc/table/block_integral.h"
 #include "proc/table/specular_fill.h"
-#include "proc/table/specular_lookup.h"
+#include "proc/table/specular_integral.h"
 
 namespace gonio::proc {
 namespace {
@@ -38,27 +38,18 @@ std::vector<TotalFacts> totals(const SampleSet& set, const std::vector<Channel>&
     return all;
 }
 
-/// One plane as a table of its own; transmission as if it were reflection, which has the same
-/// integral.
 std::vector<TotalFacts> totals(const SpecularTable& table, const std::vector<Channel>& channels) {
     std::vector<TotalFacts> all;
     for (std::size_t plane = 0; plane < table.planes.size(); ++plane) {
-        SpecularTable one = table;
-        one.kind = ScatterKind::Brdf;
-        one.colour = TableColour::Monochrome;
-        one.planes = {table.planes[plane]};
-        const auto lookup = SpecularLookup::over(std::move(one));
-        if (!lookup) continue;
         for (std::size_t r = 0; r < table.rotationDeg.size(); ++r) {
             for (std::size_t i = 0; i < table.incidenceDeg.size(); ++i) {
                 const TableNode node{.rotation = r, .incidence = i};
-                const Direction wi = table.pairAt(node).in;
                 all.push_back({.channel = nameOf(channels[plane]),
                                .incidenceDeg = table.incidenceDeg[i],
-                               .lightAzimuthDeg = fileDegrees(wi.phi()),
+                               .lightAzimuthDeg = fileDegrees(table.pairAt(node).in.phi()),
                                .transmission = table.kind == ScatterKind::Btdf,
                                .stated = table.planes[plane].tis[table.tisIndex(node)],
-                               .recomputed = totalScatter(*lookup, wi, Band::R)});
+                               .recomputed = specularIntegral(table, plane, node)});
             }
         }
     }
