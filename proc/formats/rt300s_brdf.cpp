@@ -189,4 +189,25 @@ SphericalTable tableOfJdv(std::span<const JdvBlock> blocks) {
     return table;
 }
 
+Result<FileRead<SphericalTable>> parseRt300sTable(std::string_view text, std::string_view name) {
+    if (!isJdv(text)) {
+        const auto readings = parseRt300sCsv(text, name);
+        if (!readings) return readings.error();
+        return Error{ErrorKind::Usage,
+                     "rt300s: " + std::string(name) +
+                         ": raw readings are no BRDF without those of the empty stage: --black "
+                         "BLANK.csv"};
+    }
+    auto read = parseJdv(text, name);
+    if (!read) return read.error();
+    FileRead<SphericalTable> table{.content = tableOfJdv(read->content),
+                                   .about = std::move(read->about),
+                                   .warnings = std::move(read->warnings)};
+    if (!read->content.empty()) {
+        table.about.set(key::kSample, read->content.front().sampleId);
+        table.about.set(key::kDate, read->content.front().date);
+    }
+    return table;
+}
+
 }  // namespace gonio::proc

@@ -15,6 +15,8 @@
 
 #include <cstddef>
 #include <span>
+#include <string_view>
+#include <vector>
 
 #include "proc/core/result.h"
 #include "proc/formats/rt300s.h"
@@ -54,5 +56,10 @@ struct Rt300sBrdf {
 /// What a JDV export holds: values that the instrument calls BRDF, as they stand; the shadow is
 /// masked. Each time an incidence comes again is one more channel.
 [[nodiscard]] SphericalTable tableOfJdv(std::span<const JdvBlock> blocks);
+
+/// A file that is a BRDF by itself: a JDV export. A Usage error for raw readings, which are none
+/// without black's.
+[[nodiscard]] Result<FileRead<SphericalTable>> parseRt300sTable(std::string_view text,
+                                                                std::string_view name);
 
 }  // namespace gonio::proc

@@ -122,6 +122,24 @@ TEST(Rt300sBrdf, SubtractsBlackAndDividesByTheCosine) {
         1e-15);
 }
 
+TEST(Rt300sBrdf, TakesJdvForATableAndReadingsForNone) {
+    const auto path = test::dataFile("vendor_exports/test_jdv.jdv");
+    if (!path) return;
+    const auto table = parseRt300sTable(*readFile(*path), "test.jdv");
+    ASSERT_TRUE(table);
+    EXPECT_EQ(table->about.at(key::kSample), "Sample 0");
+    EXPECT_EQ(table->content.channels, (std::vector<Channel>{{"run 1", {}}, {"run 2", {}}}));
+    ASSERT_EQ(table->content.blocks.size(), 4U);
+    // Second run at the normal: azimuth -90, polar 30 lies at phi 180.
+    EXPECT_EQ(nodeAt(table->content.blocks[2], 180, 30), -48523.83);
+    EXPECT_EQ(nodeAt(table->content.blocks[2], 0, 30), -26875.9);
+    const auto raw =
+        parseRt300sTable("azimuth_deg,incidence_deg,receive_deg,RT\n0,10,20,1\n", "in");
+    ASSERT_FALSE(raw);
+    EXPECT_EQ(raw.error().kind, ErrorKind::Usage);
+    EXPECT_NE(raw.error().message.find("--black"), std::string::npos);
+}
+
 TEST(Rt300sBrdf, MatchesBlackByAngleNeverByRow) {
     const auto ec1 = made({kEc1});
     if (!ec1) return;
