@@ -135,11 +135,12 @@ private:
             return keepComment(line.empty() ? line : line.substr(1));
         }
         if (columns_ > 0) return fail("the keyword " + shown(keyword) + " among the rows");
-        if (!keys_.insert(lower(keyword)).second) return fail(shown(keyword) + " is given twice");
-        if (keyword == "DIM") return dimensions(value);
-        if (keyword == "PARAM_IN") return parametrisation(kInputs, input_, keyword, value);
-        if (keyword == "PARAM_OUT") return parametrisation(kOutputs, output_, keyword, value);
-        if (keyword == "VS") {
+        const std::string known = lower(keyword);
+        if (!keys_.insert(known).second) return fail(shown(keyword) + " is given twice");
+        if (known == "dim") return dimensions(value);
+        if (known == "param_in") return parametrisation(kInputs, input_, keyword, value);
+        if (known == "param_out") return parametrisation(kOutputs, output_, keyword, value);
+        if (known == "vs") {
             const bool none = value.find_first_not_of("0 \t") == std::string_view::npos;
             return none || fail("VS " + shown(value) + ": intervals of values are not read");
         }
@@ -171,7 +172,7 @@ private:
     void keep(std::string_view keyword, std::string_view value) {
         const bool quoted = value.size() >= 2 && value.front() == '"' && value.back() == '"';
         if (quoted) value = value.substr(1, value.size() - 2);
-        if (keyword == "SAMPLE") {
+        if (lower(keyword) == "sample") {
             read_.about.set(key::kSample, std::string(value));
         } else {
             read_.about.set(std::string(kForeign) + std::string(keyword), std::string(value));

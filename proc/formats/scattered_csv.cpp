@@ -77,6 +77,10 @@ private:
             const bool one = names[i] == "f";
             if (!one && !names[i].starts_with("f_")) continue;
             const std::string suffix = one ? "" : names[i].substr(1);
+            if (suffix.starts_with("_random") || suffix.starts_with("_systematic")) {
+                return csv_.fail("column " + printable(names[i]) +
+                                 ": its uncertainty would be another's u_random or u_systematic");
+            }
             rows().channels.push_back(one ? Channel{} : channelOf(suffix.substr(1)));
             if (!addColumns(i, suffix)) return false;
         }

@@ -58,6 +58,15 @@ TEST(Alta, ReadsTheProjectedForm) {
     EXPECT_EQ(read.about.comments, std::vector<std::string>{"a comment"});
 }
 
+// Found by libFuzzer: kept as a foreign keyword beside the sample's name, and written as a second
+// one.
+TEST(Alta, TakesKeywordsInAnyCase) {
+    const FileRead<BrdfRows> read =
+        parsed(replaced(replaced(smallAlta(), "#SAMPLE", "#SAMPlE"), "#DIM", "#Dim"));
+    EXPECT_EQ(read.about.at(key::kSample), "tape");
+    EXPECT_EQ(written(parsed(written(read))), written(read));
+}
+
 TEST(Alta, ReadsTheRealTape) {
     const auto path = test::dataFile("retroreflective/retro-3M-jaune.dat");
     if (!path) return;

@@ -52,6 +52,14 @@ TEST(ScatteredCsv, ReadsItsColumns) {
     EXPECT_EQ(read.warnings, std::vector<std::string>{"1 negative values"});
 }
 
+// Found by libFuzzer: a channel "random_r" has its u where u_random of the channel r stands.
+TEST(ScatteredCsv, RefusesChannelsThatWouldShareAColumn) {
+    for (const char* name : {"f_random_r", "f_systematic_b"}) {
+        EXPECT_TRUE(refuses(parseScatteredCsv(replaced(smallCsv(), "f_g", name), "in"),
+                            {"csv: in: line ", name}));
+    }
+}
+
 TEST(ScatteredCsv, WritesTheSameBytesAgain) {
     for (BrdfRows rows : {test::measuredRows(), test::asymmetricRows(30)}) {
         for (const bool isotropic : {true, false}) {
