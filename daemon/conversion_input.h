@@ -19,6 +19,9 @@ struct ConversionInput {
     proc::BandChoice bands{};
     std::optional<bool> cosine{};    ///< whether its values hold it; else as the file says
     std::string estimator = "none";  ///< else it answers all directions of a table
+    /// RT-300S readings: those of the empty stage, and more of the same sample, to be averaged.
+    std::filesystem::path black{};
+    std::vector<std::filesystem::path> repeats{};
 };
 
 struct OpenedConversion {

@@ -100,8 +100,8 @@ std::optional<std::string_view> CsvRows::nextLine() {
         if (content.front() != '#') return line;
         content.remove_prefix(1);
         if (content.starts_with(' ')) content.remove_prefix(1);
-        if (comments_.size() == kMostComments) {
-            fail("more than " + std::to_string(kMostComments) + " comments");
+        if (comments_.size() == CommentLines::kMost) {
+            fail("more than " + std::to_string(CommentLines::kMost) + " comments");
             return std::nullopt;
         }
         comments_.emplace_back(content);
