@@ -46,7 +46,8 @@ Result<proc::BrdfFile> lessBlack(const ConversionInput& input, const std::filesy
         if (!scan) return scan.error();
         if (scans.empty()) file.about = std::move(scan->about);
         for (const std::string& warning : scan->warnings) {
-            file.warnings.push_back(one.filename().string() + ": " + warning);
+            const std::string whose = paths.size() > 1 ? one.filename().string() + ": " : "";
+            file.warnings.push_back(whose + warning);
         }
         scans.push_back(std::move(scan->content));
     }

@@ -9,6 +9,8 @@ namespace gonio::proc {
 namespace {
 
 constexpr double kHorizon = 1e-12;  // cos(90 deg) is 6e-17 in double
+/// A node on the horizon holds the limit: what is answered this far from it, degrees.
+constexpr double kNudgeDeg = 1e-6;
 
 struct BlockCounts {
     std::size_t nodes = 0, unanswered = 0, uncertain = 0, extrapolated = 0;
@@ -21,6 +23,18 @@ Band bandOf(const Channel& channel, Band other) {
     return other;
 }
 
+/// The pair of a node, or beside the horizon of one that lies on it.
+LightView askedPair(const SphericalTable& table,
+                    const SphericalBlock& block,
+                    std::size_t azimuth,
+                    std::size_t theta) {
+    LightView pair = table.pairAt(block, azimuth, theta);
+    if (std::abs(pair.out.z()) > kHorizon) return pair;
+    const double asked = block.transmission ? 90 + kNudgeDeg : 90 - kNudgeDeg;
+    pair.out = Direction::fromSpherical(Radians::fromDegrees(asked), pair.out.phi());
+    return pair;
+}
+
 BlockCounts fillBlock(const Scatterer& from,
                       const SphericalTable& table,
                       SphericalBlock& block,
@@ -30,7 +44,7 @@ BlockCounts fillBlock(const Scatterer& from,
                    std::numeric_limits<double>::quiet_NaN());
     for (std::size_t azimuth = 0; azimuth < block.azimuthDeg.size(); ++azimuth) {
         for (std::size_t theta = 0; theta < block.thetaDeg.size(); ++theta) {
-            const LightView pair = table.pairAt(block, azimuth, theta);
+            const LightView pair = askedPair(table, block, azimuth, theta);
             if ((block.transmission ? -pair.out.z() : pair.out.z()) <= kHorizon) continue;
             ++counts.nodes;
             const Answer answer = from.answer(pair);

@@ -2,7 +2,7 @@
 // A SphericalTable made by asking a Scatterer at each node: the way from anything that answers to
 // the formats that hold blocks of normal-relative directions. Channels R, G and B are the bands;
 // every other channel is one band of the caller's choice. Transmission blocks are asked too. A node
-// without an answer is NaN.
+// without an answer is NaN; one on the horizon holds the limit toward it.
 
 #include <cstddef>
 

@@ -20,8 +20,7 @@ Converted toMerl(const ConversionSource& source, const ConversionWish& wish) {
     if (source.monochrome()) {
         file.loss.add(Loss::Dropped, "wavelength: one value stands in R, G and B", 1);
     }
-    addResampling(
-        file, source, {filled.nodes, filled.unanswered, filled.extrapolated}, Format::Merl);
+    addResampling(file, source, {filled.nodes, 0, filled.extrapolated}, Format::Merl);
     return std::vector{std::move(file)};
 }
 

@@ -1,5 +1,7 @@
 // Anything as blocks of normal-relative directions: LightTools, Speos, SSDD, UTIA, .mbsdf.
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "proc/export/conversion_steps.h"
@@ -57,9 +59,15 @@ void addTotals(SphericalTable& table, const ConversionSource& source) {
     }
 }
 
-Result<Written> written(const SphericalTable& table,
-                        const ConversionWish& wish,
-                        const Metadata& about) {
+bool hasMissing(const SphericalTable& table) {
+    return std::any_of(table.blocks.begin(), table.blocks.end(), [](const SphericalBlock& block) {
+        return std::any_of(block.f.begin(), block.f.end(), [](double f) { return std::isnan(f); });
+    });
+}
+
+/// Missing values become 0: where there is a place for it, the file says so.
+Result<Written> written(const SphericalTable& table, const ConversionWish& wish, Metadata about) {
+    if (hasMissing(table) && wish.to != Format::Utia) about.set(key::kMissing, "0");
     switch (wish.to) {
         case Format::LightTools: return writeLightTools(table, about);
         case Format::Speos:
@@ -90,8 +98,7 @@ Converted toSpherical(const ConversionSource& source, const ConversionWish& wish
     Converted files = one(written(filled.table, wish, source.about));
     if (!files) return files;
     addPlainLosses(files->front().loss, source);
-    addResampling(
-        files->front(), source, {filled.nodes, filled.unanswered, filled.extrapolated}, wish.to);
+    addResampling(files->front(), source, {filled.nodes, 0, filled.extrapolated}, wish.to);
     return files;
 }
 

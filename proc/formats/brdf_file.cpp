@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "proc/formats/alta.h"
@@ -131,6 +132,16 @@ constexpr std::array kCodecs{Codec{Format::Gonio, ofGonio},
                              Codec{Format::Rt300s, ofRt300s},
                              Codec{Format::Klems, of<parseKlems>}};
 
+/// Our own files say where an exact 0 stands for a missing value.
+void restoreMissing(BrdfFile& file) {
+    auto* table = std::get_if<SphericalTable>(&file.content);
+    if (table == nullptr || file.about.at(key::kMissing) != "0") return;
+    for (SphericalBlock& block : table->blocks) {
+        std::replace(block.f.begin(), block.f.end(), 0.0, std::numeric_limits<double>::quiet_NaN());
+    }
+    file.about.values.erase(std::string(key::kMissing));
+}
+
 /// Of one channel: what its name, its wavelength or the file's name says.
 std::optional<Band> soleBand(const std::vector<Channel>& channels,
                              const std::filesystem::path& path) {
@@ -153,7 +164,9 @@ Result<BrdfFile> decodeBrdf(Format format, std::string_view bytes, std::string_v
                          " is no BRDF; `gonio info` tells what it holds"};
     }
     Result<BrdfFile> file = known->decode(bytes, name);
-    if (file) file->format = format;
+    if (!file) return file;
+    file->format = format;
+    restoreMissing(*file);
     return file;
 }
 

@@ -1,6 +1,20 @@
 #include "proc/formats/loss_report.h"
 
+#include <algorithm>
+
 namespace gonio::proc {
+
+void LossReport::add(Loss kind, std::string what, std::size_t count) {
+    if (count == 0) return;
+    const auto known = std::find_if(items.begin(), items.end(), [&](const Item& item) {
+        return item.kind == kind && item.what == what;
+    });
+    if (known != items.end()) {
+        known->count += count;
+    } else {
+        items.push_back({.kind = kind, .what = std::move(what), .count = count});
+    }
+}
 
 std::string_view name(Loss kind) {
     switch (kind) {

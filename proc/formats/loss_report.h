@@ -34,10 +34,8 @@ struct LossReport {
     };
     std::vector<Item> items;
 
-    /// Ignores a count of 0.
-    void add(Loss kind, std::string what, std::size_t count) {
-        if (count > 0) items.push_back({.kind = kind, .what = std::move(what), .count = count});
-    }
+    /// Ignores a count of 0; what is there already is counted on.
+    void add(Loss kind, std::string what, std::size_t count);
 };
 
 /// Bytes of a file and what they leave out.

@@ -167,6 +167,7 @@ private:
         SphericalTable& table = read_.content;
         table.channels = part.channels;
         table.planeSymmetrical = true;
+        table.cellCentred = true;
         std::move(part.blocks.begin(), part.blocks.end(), std::back_inserter(table.blocks));
         return {};
     }
@@ -252,6 +253,7 @@ SphericalTable mbsdfGrid(std::vector<Channel> channels,
     SphericalTable grid;
     grid.channels = std::move(channels);
     grid.planeSymmetrical = true;
+    grid.cellCentred = true;
     appendBlocks(grid, reflection, false);
     if (transmission) appendBlocks(grid, *transmission, true);
     return grid;

@@ -57,12 +57,31 @@ std::vector<double> thetaWeights(const std::vector<double>& axisDeg) {
     return weights;
 }
 
+/// Of even cells: each its own share of the circle, the half of it standing for both.
+std::vector<double> cellAzimuthWeights(const SphericalBlock& block) {
+    const std::size_t count = block.azimuthDeg.size();
+    return std::vector(count, 360.0 / static_cast<double>(count));
+}
+
+std::vector<double> cellThetaWeights(const std::vector<double>& axisDeg) {
+    std::vector<double> weights;
+    const double half = axisDeg.size() > 1 ? (axisDeg[1] - axisDeg[0]) / 2 : 45;
+    for (const double centre : axisDeg) {
+        const double low = std::sin(Radians::fromDegrees(centre - half).value());
+        const double high = std::sin(Radians::fromDegrees(centre + half).value());
+        weights.push_back(std::abs(high * high - low * low) / 2);
+    }
+    return weights;
+}
+
 }  // namespace
 
 double blockIntegral(const SphericalTable& table, const SphericalBlock& block) {
-    const std::vector<double> azimuths = azimuthWeights(table, block);
+    const std::vector<double> azimuths =
+        table.cellCentred ? cellAzimuthWeights(block) : azimuthWeights(table, block);
     if (azimuths.empty()) return std::nan("");
-    const std::vector<double> thetas = thetaWeights(block.thetaDeg);
+    const std::vector<double> thetas =
+        table.cellCentred ? cellThetaWeights(block.thetaDeg) : thetaWeights(block.thetaDeg);
     double sum = 0;
     for (std::size_t a = 0; a < azimuths.size(); ++a) {
         double row = 0;

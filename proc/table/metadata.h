@@ -27,6 +27,8 @@ inline constexpr std::string_view kReference = "reference";  ///< white referenc
 inline constexpr std::string_view kQuality = "qc";
 inline constexpr std::string_view kWavelengths = "wavelengths_nm";          ///< "630 525 465"
 inline constexpr std::string_view kSolidAngle = "detector_solid_angle_sr";  ///< of one value
+/// "0": in this file, a format without a mark for it, an exact 0 is a missing value.
+inline constexpr std::string_view kMissing = "missing_is";
 inline constexpr std::string_view kCosine =
     "cosine";  ///< whether the file's values hold the cosine: "yes", "no"
 }  // namespace key

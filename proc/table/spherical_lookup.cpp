@@ -43,10 +43,25 @@ std::optional<AxisPlace> placeOnArc(const std::vector<double>& axis, double at) 
     return placeOn(axis, at);
 }
 
+/// Of even cells: what lies in the outer half of the first or the last cell is taken as its centre.
+double heldInCells(const SphericalTable& table, const std::vector<double>& axis, double at) {
+    if (!table.cellCentred || axis.size() < 2) return at;
+    constexpr double kRounding = 1e-9;
+    const double half = (axis[1] - axis[0]) / 2 + kRounding;
+    if (at < axis.front() && at >= axis.front() - half) return axis.front();
+    if (at > axis.back() && at <= axis.back() + half) return axis.back();
+    return at;
+}
+
 std::optional<AxisPlace> placeAzimuth(const SphericalTable& table,
                                       const SphericalBlock& block,
                                       double azimuth) {
     if (!table.planeSymmetrical) return placeOnCircle(block.azimuthDeg, azimuth);
+    if (table.cellCentred) {
+        const double away = std::abs(std::remainder(azimuth - table.mirrorAzimuthDeg, 360.0));
+        const double folded = table.mirrorAzimuthDeg - away;
+        return placeOn(block.azimuthDeg, heldInCells(table, block.azimuthDeg, folded));
+    }
     if (const auto here = placeOnArc(block.azimuthDeg, azimuth)) return here;
     return placeOnArc(block.azimuthDeg, 2 * table.mirrorAzimuthDeg - azimuth);
 }
@@ -135,7 +150,8 @@ SphericalLookup::Value SphericalLookup::inSide(const Side& side, const Place& pl
 }
 
 SphericalLookup::Value SphericalLookup::inFan(const Fan& fan, const Place& place) const {
-    const auto incidence = placeOn(fan.incidenceDeg, place.incidence);
+    const auto incidence =
+        placeOn(fan.incidenceDeg, heldInCells(table_, fan.incidenceDeg, place.incidence));
     if (!incidence) return {kNan, false};
     return between<Value>(
         *incidence, [&](std::size_t i) { return inBlock(table_.blocks[fan.block[i]], place); });
@@ -143,9 +159,9 @@ SphericalLookup::Value SphericalLookup::inFan(const Fan& fan, const Place& place
 
 SphericalLookup::Value SphericalLookup::inBlock(const SphericalBlock& block,
                                                 const Place& place) const {
-    const auto theta = placeOn(block.thetaDeg, place.theta);
+    const auto theta = placeOn(block.thetaDeg, heldInCells(table_, block.thetaDeg, place.theta));
     if (!theta) return {kNan, false};
-    if (place.pole) {
+    if (place.pole && !table_.cellCentred) {
         for (std::size_t a = 0; a < block.azimuthDeg.size(); ++a) {
             const double f = block.f[block.index(a, theta->low)];
             if (!std::isnan(f)) return {f, true};
@@ -172,7 +188,6 @@ Answer SphericalLookup::answer(const LightView& pair) const {
     const std::size_t asked = channels_.count == BandCount::One ? 1 : 3;
     LedBands f;
     bool node = true;
-    bool whole = true;
     for (std::size_t i = 0; i < asked; ++i) {
         const ChannelBlend& blend = channels_.bands[i];
         f.value[i] = blend.of([&](std::size_t channel) {
@@ -181,14 +196,14 @@ Answer SphericalLookup::answer(const LightView& pair) const {
             return value.f;
         });
         node = node && blend.t == 0;
-        whole = whole && !std::isnan(f.value[i]);
     }
     const Source source = node ? Source::Measured : Source::Interpolated;
-    if (!whole) return Answer::none({}, source);
-    Answer answer;
+    Answer answer = Answer::none({}, source);
     answer.f = asked == 1 ? LedBands::all(f.value[0]) : f;
-    answer.flags.set(node ? Flag::Measured : Flag::Interpolated);
-    answer.source = source;
+    const auto missing = [](double value) { return std::isnan(value); };
+    if (!std::all_of(answer.f.value.begin(), answer.f.value.end(), missing)) {
+        answer.flags.set(node ? Flag::Measured : Flag::Interpolated);
+    }
     return answer;
 }
 

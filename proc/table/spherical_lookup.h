@@ -7,7 +7,9 @@
 // theta 0 every azimuth is the same direction: the first node with data answers. An isotropic table
 // turns with the light. wo below the surface is answered by the transmission blocks; without any,
 // and for wi at or below the horizon: no answer, flag below_horizon. Outside the axes of theta,
-// azimuth and incidence, and where a node that is needed has no data: no answer, without flags.
+// azimuth and incidence, and where a node that is needed has no data: no answer, without flags; a
+// band is answered where the others are not. Of even cells the outermost values hold to the end of
+// their cells.
 //
 // At a node: flag and source `measured`; between nodes `interpolated`. Uncertainty is not known.
 

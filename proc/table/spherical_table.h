@@ -41,6 +41,9 @@ struct SphericalTable {
     double mirrorAzimuthDeg = 180;
     /// The azimuths cover one side of the plane of incidence, and the other mirrors it.
     bool planeSymmetrical = false;
+    /// Values are those of even cells, at whose centres they stand: an axis ends half a step before
+    /// its range does, and out there its last value holds.
+    bool cellCentred = false;
     std::vector<SphericalBlock> blocks;
 
     [[nodiscard]] LightView pairAt(const SphericalBlock& block,

@@ -162,7 +162,9 @@ TEST(Format, IsWrittenAsTheNameSaysOrAsksWhich) {
     EXPECT_EQ(*formatToWrite("a.b.JSON"), Format::Bird);
     for (const FormatFacts& facts : formats()) {
         const auto found = formatToWrite("a" + std::string(facts.extension));
-        EXPECT_EQ(bool(found), facts.writes || facts.format == Format::Rt300s) << facts.name;
+        const bool several = facts.format == Format::Speos;  // .brdf, which BiRD's files have, too
+        EXPECT_EQ(bool(found), !several && (facts.writes || facts.format == Format::Rt300s))
+            << facts.name;
     }
     const auto both = formatToWrite("a.brdf");
     ASSERT_FALSE(both);
