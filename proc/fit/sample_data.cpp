@@ -51,11 +51,22 @@ FitRow& addCell(DataMaker& maker, const LedTable& led, std::size_t cell) {
     return row;
 }
 
+/// A sample that was made of a file of plain values has none.
+bool anyUncertainty(const SampleSet& set) {
+    const auto known = [](double u) { return !std::isnan(u); };
+    return std::any_of(set.leds.begin(), set.leds.end(), [&](const LedTable& led) {
+        return std::any_of(led.bands.begin(), led.bands.end(), [&](const CellSamples& cells) {
+            return std::any_of(cells.uRandom.begin(), cells.uRandom.end(), known);
+        });
+    });
+}
+
 }  // namespace
 
 BrdfData fitDataOf(const SampleSet& set, const DataOptions& options) {
     DataMaker maker(options);
     maker.data().shared = budgetShares(set);
+    maker.data().uKnown = anyUncertainty(set);
     for (std::size_t l = 0; l < set.leds.size(); ++l) {
         const LedTable& led = set.leds[l];
         const auto group = static_cast<std::uint16_t>(maker.data().incidences.size());

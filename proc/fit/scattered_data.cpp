@@ -131,7 +131,8 @@ Result<BrdfData> fitDataOf(const BrdfRows& rows, const DataOptions& options) {
     if (!bands) return bands.error();
     DataMaker maker(options);
     maker.data().bands = bands->count;
-    maker.data().uKnown = !rows.uRandom.empty();
+    maker.data().uKnown = std::any_of(
+        rows.uRandom.begin(), rows.uRandom.end(), [](double u) { return !std::isnan(u); });
     for (std::size_t i = 0; i < rows.pairs.size(); ++i) {
         const LightView& pair = rows.pairs[i];
         if (!pair.in.aboveHorizon() || !pair.out.aboveHorizon()) {

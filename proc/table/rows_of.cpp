@@ -110,6 +110,10 @@ BrdfRows rowsOf(const SampleSet& set) {
             for (const Band band : bands) addCell(rows, led.bands[index(band)], cell);
         }
     }
+    const auto unknown = [](double u) { return std::isnan(u); };
+    for (auto* column : {&rows.uRandom, &rows.uSystematic}) {
+        if (std::all_of(column->begin(), column->end(), unknown)) column->clear();
+    }
     return rows;
 }
 

@@ -97,6 +97,10 @@ Answer SampleLookup::blended(const Blend& blend) const {
     }
     if (!blend.oneCell() || !any) answer.flags.clear(Flag::Measured);
     if (!blend.oneCell() && any) answer.flags.set(Flag::Interpolated);
+    const auto unknown = [](double u) { return std::isnan(u); };
+    for (auto* u : {&answer.uRandom, &answer.uSystematic}) {
+        if (std::all_of((*u)->value.begin(), (*u)->value.end(), unknown)) u->reset();
+    }
     return any ? answer : Answer::none(answer.flags, answer.source);
 }
 
