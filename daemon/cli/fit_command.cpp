@@ -16,9 +16,11 @@
 #include "proc/core/number_text.h"
 #include "proc/fit/residual_map.h"
 #include "proc/fit/selection.h"
+#include "proc/formats/brdf_file.h"
 #include "proc/formats/file_bytes.h"
-#include "proc/formats/points_csv.h"
+#include "proc/formats/scattered_csv.h"
 #include "proc/report/hemisphere_map.h"
+#include "proc/table/rows_of.h"
 #include "proc/table/sample_lookup.h"
 
 namespace gonio::daemon {
@@ -79,20 +81,24 @@ Result<proc::BrdfData> dataOf(const CommonOptions& common, const FitOptions& opt
     if (options.file.starts_with("model:")) {
         return usage("'" + options.file + "' is a formula already; a measured file is wanted");
     }
-    if (fs::path(options.file).extension() == ".csv") {
-        const Result<proc::Points> points = proc::readPoints(options.file);
-        if (!points) return points.error();
-        return checked(proc::fitDataOf(*points, wanted), options.file);
+    const auto path = fileOf(options.file, common.store);
+    if (!path) return path.error();
+    const Result<proc::BrdfFile> file = proc::readBrdf(*path);
+    if (!file) return file.error();
+    if (const auto* sample = file->as<proc::SampleSet>()) {
+        return checked(proc::fitDataOf(*sample, wanted), options.file);
     }
-    const Result<Material> material = openMaterial(options.file, common.store);
-    if (!material) return material.error();
-    if (material->sample != nullptr) {
-        return checked(proc::fitDataOf(*material->sample, wanted), options.file);
+    if (const auto* table = file->as<proc::SpecularTable>()) {
+        return checked(proc::fitDataOf(*table, wanted), options.file);
     }
-    if (material->table != nullptr) {
-        return checked(proc::fitDataOf(*material->table, wanted), options.file);
+    if (const auto* rows = file->as<proc::BrdfRows>()) {
+        return checked(proc::fitDataOf(*rows, wanted), options.file);
     }
-    return usage("'" + options.file + "' holds no measured values");
+    if (const auto* table = file->as<proc::SphericalTable>()) {
+        return checked(proc::fitDataOf(proc::rowsOf(*table), wanted), options.file);
+    }
+    return usage("'" + options.file + "' is a " + std::string(factsOf(file->format).title) +
+                 ", which holds no measured directions of its own: gonio convert it to .gonio");
 }
 
 std::vector<std::vector<std::string>> tableOf(const proc::Selection& selection) {
@@ -163,7 +169,8 @@ Result<void> writeReport(const fs::path& folder,
     if (auto done = proc::writeFile(folder / "fit.md", fitMarkdown(selection)); !done) return done;
     const proc::ModelFit* fit = shownFit(selection);
     if (fit == nullptr) return {};
-    const std::string csv = proc::sampleCsv(proc::residualMap(*fit, data));
+    const std::string csv =
+        proc::writeScatteredCsv(proc::rowsOf(proc::residualMap(*fit, data)), {}).bytes;
     if (auto done = proc::writeFile(folder / "residuals.csv", csv); !done) return done;
     const proc::SampleLookup sizes(proc::residualSizeMap(*fit, data));
     const std::string map =

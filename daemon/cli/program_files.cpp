@@ -156,7 +156,7 @@ void Program::addFit() {
         *app, "fit", "fit analytic models, rank them, and choose the simplest that holds", [this] {
             return daemon::fit(common, fit);
         });
-    sub->add_option("file", fit.file, "a .gonio, Zemax or CSV file, or sample:NAME")->required();
+    sub->add_option("file", fit.file, "a file of measured values, or sample:NAME")->required();
     sub->add_option("--models", fit.models, "names of families with commas, or all");
     sub->add_option("--weights",
                     fit.weights,

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "proc/core/colour.h"
+#include "proc/export/band_rows.h"
 #include "proc/table/band_channels.h"
 
 namespace gonio::proc {
@@ -154,6 +155,12 @@ Result<BrdfFile> chosen(BrdfFile file, const BandChoice& choice) {
         return file;
     }
     if (auto* sample = std::get_if<SampleSet>(&file.content)) keepOnly(*sample, choice.bands);
+    if (auto* rows = std::get_if<BrdfRows>(&file.content)) {
+        Result<BrdfRows> kept = onlyBands(*rows, choice.bands);
+        if (!kept) return kept.error();
+        *rows = std::move(*kept);
+        if (choice.bands.size() == 1) file.band = choice.bands.front();
+    }
     file.bands = choice.bands;
     const auto left = bandsOf(file);
     if (!left) return left.error();

@@ -16,7 +16,7 @@ constexpr std::size_t kMostProbes = 40'000;
 constexpr std::size_t kCells = 20'626;
 
 struct PlainLosses {
-    std::size_t uncertain = 0, flagged = 0, transmitted = 0;
+    std::size_t uncertain = 0, flagged = 0, transmitted = 0, otherMatrices = 0;
 };
 
 void count(PlainLosses& lost, const SampleSet& set) {
@@ -43,6 +43,14 @@ void count(PlainLosses& lost, const SphericalTable& table) {
         if (!block.transmission) continue;
         lost.transmitted += static_cast<std::size_t>(
             std::count_if(block.f.begin(), block.f.end(), [](double f) { return !std::isnan(f); }));
+    }
+}
+/// What the look-up does not answer from: all but the front's visible reflection.
+void count(PlainLosses& lost, const KlemsTable& table) {
+    for (const KlemsMatrix& matrix : table.matrices) {
+        if (matrix.transmission) lost.transmitted += matrix.f.size();
+        const bool taken = matrix.face == KlemsFace::Front && matrix.spectrum == "Visible";
+        if (!taken && !matrix.transmission) lost.otherMatrices += matrix.f.size();
     }
 }
 template <class Other>
@@ -74,7 +82,10 @@ std::vector<Probe> probesOfSource(const ConversionSource& source) {
 }  // namespace
 
 bool mayCopy(const ConversionSource& source, const ConversionWish& wish) {
-    return source.file != nullptr && !source.estimated && !wish.grid.asks();
+    if (source.file == nullptr || source.estimated || wish.grid.asks()) return false;
+    const bool kept =
+        source.file->as<SampleSet>() != nullptr || source.file->as<BrdfRows>() != nullptr;
+    return kept || source.file->bands.empty();  // of samples and rows the others are gone already
 }
 
 std::vector<double> incidencesFor(const ConversionSource& source, const ConversionWish& wish) {
@@ -108,13 +119,30 @@ Result<void> mustAnswer(const ConversionSource& source, Format to) {
                      "them"};
 }
 
-void addPlainLosses(LossReport& loss, const ConversionSource& source) {
-    if (!source.file) return;
+namespace {
+
+PlainLosses lossesOf(const ConversionSource& source) {
     PlainLosses lost;
+    if (!source.file) return lost;
     std::visit([&](const auto& content) { count(lost, content); }, source.file->content);
+    return lost;
+}
+
+}  // namespace
+
+void addPlainLosses(LossReport& loss, const ConversionSource& source) {
+    const PlainLosses lost = lossesOf(source);
     loss.add(Loss::Dropped, "uncertainties", lost.uncertain);
     loss.add(Loss::Dropped, "flags other than measured", lost.flagged);
+    addSideLosses(loss, source);
+}
+
+void addSideLosses(LossReport& loss, const ConversionSource& source) {
+    const PlainLosses lost = lossesOf(source);
     loss.add(Loss::Dropped, "values of transmission", lost.transmitted);
+    loss.add(Loss::Dropped,
+             "values of other faces and spectra than the front's visible one",
+             lost.otherMatrices);
 }
 
 void addResampling(ConvertedFile& file,

@@ -31,6 +31,8 @@ using Converted = Result<std::vector<ConvertedFile>>;
 
 /// Uncertainties, flags and transmission of the source, which a grid of plain values leaves out.
 void addPlainLosses(LossReport& loss, const ConversionSource& source);
+/// Of these, what no look-up of the source answers: transmission, and other faces and spectra.
+void addSideLosses(LossReport& loss, const ConversionSource& source);
 
 /// What was asked anew: `nodes` above the horizon, of which some without an answer and some from
 /// beyond what was measured.

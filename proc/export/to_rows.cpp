@@ -85,6 +85,7 @@ Converted toRows(const ConversionSource& source, const ConversionWish& wish) {
     loss.items.insert(
         loss.items.begin(),
         {Loss::Resampled, "values asked at the cells of each incidence", rows->asked->nodes});
+    addSideLosses(loss, source);
     loss.add(Loss::Extrapolated, "values from beyond what was measured", rows->asked->extrapolated);
     return files;
 }

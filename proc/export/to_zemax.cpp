@@ -46,7 +46,7 @@ ConvertedFile ofBand(const ConversionSource& source,
     if (!source.monochrome()) file.suffix = bandSuffix(asked);
     file.loss.add(
         Loss::Masked, "values of exactly 0, which read back as missing", filled.exactZero);
-    file.loss.add(Loss::Dropped, "uncertainties", filled.uncertain);
+    addPlainLosses(file.loss, source);
     addResampling(
         file, source, {filled.nodes, filled.unanswered, filled.extrapolated}, Format::Zemax, asked);
     return file;

@@ -1,7 +1,6 @@
 #pragma once
 // What a fit is made to: measured f per band with its standard uncertainties, at pairs of
-// directions, in groups of one incidence. From a measured sample, a Zemax table, or scattered
-// values in a CSV.
+// directions, in groups of one incidence. From a measured sample, a table, or scattered values.
 //
 // A cell of a measured sample holds the mean over its solid angle: within 15 degrees of the mirror
 // direction, where a lobe may bend within a cell, it is given as nodes of a Gauss rule (2 x 2, up
@@ -25,7 +24,6 @@
 
 #include "proc/core/result.h"
 #include "proc/core/scatterer.h"
-#include "proc/formats/points_csv.h"
 #include "proc/models/kernel.h"
 #include "proc/table/brdf_rows.h"
 #include "proc/table/budget_shares.h"
@@ -97,8 +95,5 @@ struct DataOptions {
                                          const DataOptions& options = {});
 /// The bands of its channels (band_channels.h); a Usage error where it has none.
 [[nodiscard]] Result<BrdfData> fitDataOf(const BrdfRows& rows, const DataOptions& options = {});
-/// Columns f or f_r,f_g,f_b, and where there u_random* or else u*, u_systematic*, flags or flags_r,
-/// flags_g, flags_b.
-[[nodiscard]] Result<BrdfData> fitDataOf(const Points& points, const DataOptions& options = {});
 
 }  // namespace gonio::proc

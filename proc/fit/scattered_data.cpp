@@ -1,11 +1,9 @@
-// Rows of scattered values in the columns of a CSV.
+// Scattered values, pair by pair.
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <string>
 
-#include "proc/core/number_text.h"
 #include "proc/fit/data_maker.h"
 #include "proc/formats/flag_column.h"
 #include "proc/table/band_channels.h"
@@ -52,78 +50,6 @@ void groupByIncidence(BrdfData& data) {
     }
 }
 
-bool hasColumn(const Points& points, const std::string& name) {
-    return std::find(points.columns.begin(), points.columns.end(), name) != points.columns.end();
-}
-
-/// The columns NAME or NAME_r, NAME_g, NAME_b; empty where they are not there.
-Result<std::vector<std::vector<double>>> bandColumns(const Points& points,
-                                                     const std::string& name,
-                                                     BandCount bands) {
-    std::vector<std::string> names{name};
-    if (bands == BandCount::Three) names = {name + "_r", name + "_g", name + "_b"};
-    std::vector<std::vector<double>> columns;
-    for (const std::string& one : names) {
-        if (!hasColumn(points, one)) return std::vector<std::vector<double>>{};
-        Result<std::vector<double>> numbers = numbersOf(points, one);
-        if (!numbers) return numbers.error();
-        columns.push_back(std::move(*numbers));
-    }
-    return columns;
-}
-
-struct ScatteredColumns {
-    BandCount bands = BandCount::Three;
-    std::vector<std::vector<double>> f, uRandom, uSystematic;
-    std::vector<std::vector<bool>> out;  ///< by flags; one for all bands, or one each; or none
-
-    [[nodiscard]] bool isOut(std::size_t band, std::size_t row) const {
-        return !out.empty() && out[out.size() == 1 ? 0 : band][row];
-    }
-};
-
-Result<ScatteredColumns> columnsOf(const Points& points) {
-    ScatteredColumns all;
-    all.bands = hasColumn(points, "f_r") ? BandCount::Three : BandCount::One;
-    const auto take = [&](const std::string& name, auto& into) -> Result<void> {
-        auto columns = bandColumns(points, name, all.bands);
-        if (!columns) return columns.error();
-        into = std::move(*columns);
-        return {};
-    };
-    if (auto done = take("f", all.f); !done) return done.error();
-    if (all.f.empty()) {
-        return Error{ErrorKind::File, "csv: no columns of values, wanted f or f_r,f_g,f_b"};
-    }
-    if (auto done = take("u_random", all.uRandom); !done) return done.error();
-    if (all.uRandom.empty()) {
-        if (auto done = take("u", all.uRandom); !done) return done.error();
-    } else if (auto done = take("u_systematic", all.uSystematic); !done) {
-        return done.error();
-    }
-    std::vector<std::string> flags;
-    for (const char* name : {"flags", "flags_r", "flags_g", "flags_b"}) {
-        if (hasColumn(points, name)) flags.emplace_back(name);
-    }
-    const bool ofAll = flags.size() == 1 && flags.front() == "flags";
-    const bool ofEach = flags.size() == 3 && flags.front() == "flags_r" && all.f.size() == 3;
-    if (!flags.empty() && !ofAll && !ofEach) {
-        std::string found;
-        for (const std::string& name : flags) found += (found.empty() ? "" : ", ") + name;
-        return Error{ErrorKind::File,
-                     "csv: columns " + found +
-                         "; wanted flags alone, or flags_r, flags_g, "
-                         "flags_b beside f_r, f_g, f_b"};
-    }
-    for (const std::string& name : flags) {
-        const auto masks = flagsOf(points, name);
-        if (!masks) return masks.error();
-        std::vector<bool>& out = all.out.emplace_back();
-        for (const Flags one : *masks) out.push_back(isLost(one));
-    }
-    return all;
-}
-
 }  // namespace
 
 Result<BrdfData> fitDataOf(const BrdfRows& rows, const DataOptions& options) {
@@ -149,31 +75,6 @@ Result<BrdfData> fitDataOf(const BrdfRows& rows, const DataOptions& options) {
             row.f[b] = of(rows.f);
             if (!rows.uRandom.empty()) row.uRandom[b] = of(rows.uRandom);
             if (!rows.uSystematic.empty()) row.uSystematic[b] = of(rows.uSystematic);
-        }
-    }
-    groupByIncidence(maker.data());
-    return std::move(maker).finished();
-}
-
-Result<BrdfData> fitDataOf(const Points& points, const DataOptions& options) {
-    const Result<ScatteredColumns> columns = columnsOf(points);
-    if (!columns) return columns.error();
-    DataMaker maker(options);
-    maker.data().bands = columns->bands;
-    maker.data().uKnown = !columns->uRandom.empty();
-    for (std::size_t i = 0; i < points.pairs.size(); ++i) {
-        const LightView& pair = points.pairs[i];
-        const bool below = !pair.in.aboveHorizon() || !pair.out.aboveHorizon();
-        if (below) {
-            maker.leaveOut();
-            continue;
-        }
-        FitRow& row = maker.add(pair);
-        for (std::size_t b = 0; b < columns->f.size(); ++b) {
-            if (columns->isOut(b, i)) continue;
-            row.f[b] = columns->f[b][i];
-            if (!columns->uRandom.empty()) row.uRandom[b] = columns->uRandom[b][i];
-            if (!columns->uSystematic.empty()) row.uSystematic[b] = columns->uSystematic[b][i];
         }
     }
     groupByIncidence(maker.data());

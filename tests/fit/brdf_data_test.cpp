@@ -9,6 +9,7 @@
 #include "proc/fit/family.h"
 #include "proc/fit/model_fit.h"
 #include "proc/fit/thinned_rows.h"
+#include "proc/formats/scattered_csv.h"
 #include "proc/models/spec.h"
 #include "tests/support/sample_sets.h"
 
@@ -16,9 +17,9 @@ namespace gonio::proc {
 namespace {
 
 Result<BrdfData> fromCsv(const std::string& text, const DataOptions& options = {}) {
-    const auto points = parsePoints(text, "test");
+    const auto points = parseScatteredCsv(text, "test");
     EXPECT_TRUE(points) << points.error().message;
-    return fitDataOf(*points, options);
+    return fitDataOf(points->content, options);
 }
 
 TEST(BrdfData, ASampleGivesItsPresentCells) {

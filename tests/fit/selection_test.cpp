@@ -8,6 +8,7 @@
 #include <numeric>
 #include <sstream>
 
+#include "proc/formats/scattered_csv.h"
 #include "proc/models/spec.h"
 #include "proc/solve/chi_square.h"
 #include "tests/fit/simulated.h"
@@ -242,7 +243,7 @@ TEST(Selection, NothingFittedIsSaidSo) {
 }
 
 /// The file's own columns (SOURCES.md): incidence, signed theta_out in two projections, f cos.
-Result<Points> tape(const std::filesystem::path& file) {
+Result<FileRead<BrdfRows>> tape(const std::filesystem::path& file) {
     std::ifstream in(file);
     std::ostringstream csv;
     csv.precision(17);
@@ -259,7 +260,7 @@ Result<Points> tape(const std::filesystem::path& file) {
         csv << thetaI * 180 / kPi << ",0," << thetaO * 180 / kPi << ","
             << std::atan2(across, along) * 180 / kPi << "," << value / std::cos(thetaO) << "\n";
     }
-    return parsePoints(csv.str(), "tape");
+    return parseScatteredCsv(csv.str(), "tape");
 }
 
 TEST(Selection, NoFamilyFitsARetroreflectiveTape) {
@@ -267,7 +268,7 @@ TEST(Selection, NoFamilyFitsARetroreflectiveTape) {
     if (!file) GTEST_SKIP();
     const auto points = tape(*file);
     ASSERT_TRUE(points) << points.error().message;
-    const auto data = fitDataOf(*points);
+    const auto data = fitDataOf(points->content);
     ASSERT_TRUE(data) << data.error().message;
     ASSERT_GT(data->rows.size(), 5000U);
     const Selection selection = selectModel(*familiesNamed("all"), *data);
