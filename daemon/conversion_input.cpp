@@ -53,7 +53,7 @@ Result<proc::BrdfFile> lessBlack(const ConversionInput& input, const std::filesy
     }
     const auto black = readScan(input.black);
     if (!black) return black.error();
-    auto made = proc::rt300sBrdf(scans, black->content);
+    auto made = proc::rt300sBrdf(scans, black->content, input.readings);
     if (!made) return made.error().in(path.string());
     for (std::string& warning : proc::warningsOf(*made))
         file.warnings.push_back(std::move(warning));
@@ -63,6 +63,11 @@ Result<proc::BrdfFile> lessBlack(const ConversionInput& input, const std::filesy
 }
 
 Result<proc::BrdfFile> readFor(const ConversionInput& input, const std::filesystem::path& path) {
+    if (!input.black.empty() && input.from.value_or(proc::Format::Rt300s) != proc::Format::Rt300s) {
+        return Error{ErrorKind::Usage,
+                     "--black is for RT-300S readings, not for --from " +
+                         std::string(proc::name(*input.from))};
+    }
     if (!input.black.empty()) return lessBlack(input, path);
     if (!input.repeats.empty()) {
         return Error{ErrorKind::Usage,

@@ -10,6 +10,7 @@
 #include "proc/core/result.h"
 #include "proc/export/band_choice.h"
 #include "proc/export/conversion.h"
+#include "proc/formats/rt300s_brdf.h"
 
 namespace gonio::daemon {
 
@@ -22,6 +23,7 @@ struct ConversionInput {
     /// RT-300S readings: those of the empty stage, and more of the same sample, to be averaged.
     std::filesystem::path black{};
     std::vector<std::filesystem::path> repeats{};
+    proc::Rt300sOptions readings{};
 };
 
 struct OpenedConversion {

@@ -160,6 +160,8 @@ struct ConvertOptions {
     bool half = false;                           ///< 16-bit floats where the format has them
     std::filesystem::path black;                 ///< RT-300S readings of the empty stage
     std::vector<std::filesystem::path> repeats;  ///< more readings of the same sample
+    bool plane = false;         ///< readings of both sides of the plane of incidence are averaged
+    bool zeroAtShadow = false;  ///< what is left in the arm's shadow is taken off, too
 };
 Result<void> convert(const CommonOptions& common, const ConvertOptions& options);
 

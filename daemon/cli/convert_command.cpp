@@ -1,5 +1,6 @@
 // gonio convert, export: surfaces as files of other formats.
 
+#include <algorithm>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -24,10 +25,12 @@ Result<std::optional<bool>> parseCosine(const std::string& text) {
 }
 
 Result<ConversionInput> inputOf(const ConvertOptions& options) {
-    ConversionInput input{.f = options.input,
-                          .estimator = options.estimator,
-                          .black = options.black,
-                          .repeats = options.repeats};
+    ConversionInput input{
+        .f = options.input,
+        .estimator = options.estimator,
+        .black = options.black,
+        .repeats = options.repeats,
+        .readings = {.planeSymmetrical = options.plane, .zeroAtShadow = options.zeroAtShadow}};
     if (!options.from.empty()) {
         const auto from = proc::parseFormat(options.from);
         if (!from) return from.error().in("--from");
@@ -74,6 +77,15 @@ Result<std::vector<proc::Format>> formatsOf(const std::string& list) {
     return formats;
 }
 
+/// The format's extension, after its name where another of the formats has the same one.
+std::string endingOf(proc::Format format, const std::vector<proc::Format>& all) {
+    const std::string extension(factsOf(format).extension);
+    const auto alike = std::count_if(all.begin(), all.end(), [&](proc::Format other) {
+        return factsOf(other).extension == extension;
+    });
+    return alike > 1 ? "." + std::string(name(format)) + extension : extension;
+}
+
 void warn(const std::string& f, const std::vector<std::string>& warnings) {
     for (const std::string& warning : warnings) log::warning(f + ": " + warning);
 }
@@ -118,7 +130,7 @@ Result<void> exportTo(const CommonOptions& common, const ExportOptions& options)
             if (options.formats.empty()) continue;  // nobody asked for what this cannot become
             return converted.error().in("export: '" + options.file + "'");
         }
-        const fs::path file = options.output / (stem + std::string(factsOf(format).extension));
+        const fs::path file = options.output / (stem + endingOf(format, *formats));
         if (auto done = writeConverted(common, *converted, file, files); !done) return done;
     }
     if (common.json) {

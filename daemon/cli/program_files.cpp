@@ -96,6 +96,11 @@ void Program::addFiles() {
     sub->add_flag("--half", convert.half, "16-bit floats, where the format has them");
     sub->add_option("--black", convert.black, "RT-300S readings of the empty stage, taken off");
     sub->add_option("--repeat", convert.repeats, "more RT-300S readings of the same sample");
+    sub->add_flag(
+        "--plane", convert.plane, "of readings: average the sides of the plane of incidence");
+    sub->add_flag("--zero-at-shadow",
+                  convert.zeroAtShadow,
+                  "of readings: take off what is left in the shadow of the light's arm, too");
 
     sub = command(*app, "atlas", "several samples as one EXR picture for shaders", [this] {
         return daemon::atlas(common, atlas);

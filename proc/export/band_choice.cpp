@@ -115,6 +115,19 @@ bool hasBand(const SampleSet& set, Band band) {
     });
 }
 
+/// Where every channel is named as a band: these.
+std::vector<Band> namedBands(const std::vector<Channel>& channels) {
+    std::vector<Band> bands;
+    for (const Band band : kBands) {
+        const bool there =
+            std::any_of(channels.begin(), channels.end(), [&](const Channel& channel) {
+                return channel.name == Channel::of(band).name;
+            });
+        if (there) bands.push_back(band);
+    }
+    return bands.size() == channels.size() ? bands : std::vector<Band>{};
+}
+
 }  // namespace
 
 Result<BandChoice> parseBandChoice(std::string_view text) {
@@ -174,7 +187,9 @@ Result<std::vector<Band>> bandsOf(const BrdfFile& file) {
     std::vector<Band> bands;
     const auto* sample = file.as<SampleSet>();
     if (sample == nullptr) {
-        const auto found = bandChannels(channelsOf(file));
+        const std::vector<Channel> channels = channelsOf(file);
+        if (std::vector<Band> some = namedBands(channels); some.size() == 2) return some;
+        const auto found = bandChannels(channels);
         if (!found) return found.error();
         if (found->count == BandCount::One) {
             if (file.band) bands.push_back(*file.band);

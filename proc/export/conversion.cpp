@@ -6,8 +6,32 @@ namespace gonio::proc {
 
 std::string bandSuffix(Band band) { return "_" + Channel::of(band).name; }
 
+namespace {
+
+/// What is asked of a format that has no choice there.
+Result<void> checkWish(const ConversionWish& wish) {
+    const std::string what = std::string(factsOf(wish.to).title);
+    if (wish.half && wish.to != Format::ExrTiles && wish.to != Format::ExrAtlas) {
+        return Error{ErrorKind::Usage, "--half is for exr-tiles and exr-atlas, not for a " + what};
+    }
+    const bool steps = wish.to == Format::Zemax || wish.to == Format::LightTools ||
+                       wish.to == Format::Speos || wish.to == Format::Ssdd ||
+                       wish.to == Format::Mbsdf || wish.to == Format::ExrTiles;
+    if (wish.grid.stepDeg && !steps) {
+        return Error{ErrorKind::Usage, "--grid: a " + what + " has steps of its own"};
+    }
+    if (wish.grid.incidenceDeg &&
+        (wish.to == Format::Merl || wish.to == Format::Utia || wish.to == Format::Mbsdf)) {
+        return Error{ErrorKind::Usage, "--grid: a " + what + " has incidences of its own"};
+    }
+    return {};
+}
+
+}  // namespace
+
 Result<std::vector<ConvertedFile>> convertTo(const ConversionSource& source,
                                              const ConversionWish& wish) {
+    if (auto sound = checkWish(wish); !sound) return sound.error();
     switch (wish.to) {
         case Format::Gonio: return toGonio(source, wish);
         case Format::Zemax: return toZemax(source, wish);

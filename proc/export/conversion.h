@@ -27,7 +27,10 @@ struct ConversionSource {
     std::vector<double> incidenceDeg{};      ///< at which a table is asked, unless the grid says
     std::vector<double> rotationDeg{0};
     Metadata about{};
-    bool estimated = false;  ///< the scatterer is an estimator: nodes are answered, not copied
+    bool estimated = false;     ///< the scatterer is an estimator: nodes are answered, not copied
+    std::string noScatterer{};  ///< why nothing answers, and what to do
+    std::string noBands{};      ///< why the values are none of the bands
+    std::size_t lightAzimuths = 1;  ///< of the file; of more than rotationDeg some are left out
 
     [[nodiscard]] bool monochrome() const { return bands.size() < 2; }
 };

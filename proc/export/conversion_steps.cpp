@@ -102,7 +102,11 @@ std::shared_ptr<const Scatterer> allBands(const ConversionSource& source) {
 }
 
 std::vector<Channel> channelsFor(const ConversionSource& source) {
-    if (!source.monochrome()) return Channel::ofBands();
+    if (!source.monochrome()) {
+        std::vector<Channel> channels;
+        for (const Band band : source.bands) channels.push_back(Channel::of(band));
+        return channels;
+    }
     if (source.file) {
         const std::vector<Channel> own = channelsOf(*source.file);
         if (own.size() == 1) return own;
@@ -115,8 +119,14 @@ Result<void> mustAnswer(const ConversionSource& source, Format to) {
     if (source.scatterer) return {};
     return Error{ErrorKind::Usage,
                  "a " + std::string(factsOf(to).title) +
-                     " is a grid, and these are scattered values: --estimator auto answers between "
-                     "them"};
+                     " is a grid that must be answered at: " + source.noScatterer};
+}
+
+Result<void> mustHaveThree(const ConversionSource& source, Format to) {
+    if (source.bands.size() != 2) return {};
+    return Error{ErrorKind::Usage,
+                 "a " + std::string(factsOf(to).title) +
+                     " holds R, G and B, and this has two of them: --bands takes one"};
 }
 
 namespace {
@@ -143,6 +153,11 @@ void addSideLosses(LossReport& loss, const ConversionSource& source) {
     loss.add(Loss::Dropped,
              "values of other faces and spectra than the front's visible one",
              lost.otherMatrices);
+    if (source.lightAzimuths > source.rotationDeg.size()) {
+        loss.add(Loss::Dropped,
+                 "azimuths of the light",
+                 source.lightAzimuths - source.rotationDeg.size());
+    }
 }
 
 void addResampling(ConvertedFile& file,

@@ -28,6 +28,8 @@ using Converted = Result<std::vector<ConvertedFile>>;
 
 /// Usage error where nothing answers between the source's values.
 [[nodiscard]] Result<void> mustAnswer(const ConversionSource& source, Format to);
+/// Likewise where it has two of the three bands that the format wants.
+[[nodiscard]] Result<void> mustHaveThree(const ConversionSource& source, Format to);
 
 /// Uncertainties, flags and transmission of the source, which a grid of plain values leaves out.
 void addPlainLosses(LossReport& loss, const ConversionSource& source);

@@ -9,6 +9,9 @@ namespace gonio::proc {
 namespace {
 
 constexpr std::size_t kMostIncidences = 181;
+constexpr double kFinestStep = 0.1;
+/// A gigabyte of text.
+constexpr double kMostDirections = 4e7;
 
 std::vector<std::string_view> split(std::string_view text, char at) {
     std::vector<std::string_view> parts;
@@ -21,10 +24,11 @@ std::vector<std::string_view> split(std::string_view text, char at) {
 }
 
 Error wanted(std::string_view text) {
-    return {ErrorKind::Usage,
-            "--grid '" + std::string(text) +
-                "': wanted incidences in [0, 90), as 0,20,40 or 0:10:80, and a step of views up to "
-                "30 degrees behind a slash, as 0:10:80/2 or /2"};
+    return {
+        ErrorKind::Usage,
+        "--grid '" + std::string(text) +
+            "': wanted incidences in [0, 90), as 0,20,40 or 0:10:80, and a step of views of 0.1 to "
+            "30 degrees behind a slash, as 0:10:80/2 or /2; 40 million directions in all"};
 }
 
 /// FROM:STEP:TO
@@ -59,7 +63,7 @@ Result<TargetGrid> parseTargetGrid(std::string_view text) {
     const std::size_t slash = text.find('/');
     if (slash != std::string_view::npos) {
         grid.stepDeg = parseDouble(text.substr(slash + 1));
-        if (!grid.stepDeg || *grid.stepDeg <= 0 || *grid.stepDeg > 30) return wanted(text);
+        if (!grid.stepDeg || *grid.stepDeg < kFinestStep || *grid.stepDeg > 30) return wanted(text);
     }
     const std::string_view incidences = text.substr(0, slash);
     if (incidences.empty() && grid.stepDeg) return grid;
@@ -69,6 +73,9 @@ Result<TargetGrid> parseTargetGrid(std::string_view text) {
                         grid.incidenceDeg->front() >= 0 && grid.incidenceDeg->back() < 90 &&
                         grid.incidenceDeg->size() <= kMostIncidences;
     if (!inside) return wanted(text);
+    const double step = grid.stepOr(1);
+    const double incidencesAsked = static_cast<double>(grid.incidenceDeg->size());
+    if (incidencesAsked * 360 / step * 180 / step > kMostDirections) return wanted(text);
     return grid;
 }
 

@@ -11,7 +11,7 @@ namespace gonio::proc {
 
 struct TargetGrid {
     std::optional<std::vector<double>> incidenceDeg;  ///< ascending, [0, 90)
-    std::optional<double> stepDeg;                    ///< of the directions of views, (0, 30]
+    std::optional<double> stepDeg;                    ///< of the directions of views, [0.1, 30]
 
     [[nodiscard]] bool asks() const { return incidenceDeg || stepDeg; }
     [[nodiscard]] double stepOr(double other) const { return stepDeg.value_or(other); }

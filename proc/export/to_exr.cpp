@@ -53,6 +53,7 @@ Converted toExrTiles(const ConversionSource& source, const ConversionWish& wish)
     const SpecularTable* own = ownTiles(source, wish);
     if (own == nullptr) {
         if (auto answers = mustAnswer(source, Format::ExrTiles); !answers) return answers.error();
+        if (auto three = mustHaveThree(source, Format::ExrTiles); !three) return three.error();
         if (source.rotationDeg.size() > 1) {
             return Error{ErrorKind::Usage,
                          "tiles hold one rotation of the sample: gonio merge --isotropic, first"};
@@ -76,6 +77,7 @@ Result<Written> atlasOf(std::span<const ConversionSource> sources, const Convers
     Asked asked;
     for (const ConversionSource& source : sources) {
         if (auto answers = mustAnswer(source, Format::ExrAtlas); !answers) return answers.error();
+        if (auto three = mustHaveThree(source, Format::ExrAtlas); !three) return three.error();
         Tiles tiles = askedTiles(source, wish);
         addPlainLosses(loss, source);
         asked.nodes += tiles.asked.nodes;

@@ -48,6 +48,7 @@ Result<ConvertedFile> ofAnswers(const ConversionSource& source, const Conversion
 }  // namespace
 
 Converted toGonio(const ConversionSource& source, const ConversionWish& wish) {
+    if (!source.noBands.empty()) return Error{ErrorKind::Usage, source.noBands};
     if (source.bands.empty()) {
         return Error{ErrorKind::Usage,
                      "one value per pair, and neither its wavelength nor its name tells of which "
@@ -63,6 +64,9 @@ Converted toGonio(const ConversionSource& source, const ConversionWish& wish) {
                                  : rows != nullptr ? ofRows(*rows, source)
                                                    : ofAnswers(source, wish);
     if (!file) return file.error();
+    if (!source.about.at("colour").empty()) {
+        file->loss.add(Loss::Dropped, "wavelengths: linear sRGB stands in the LEDs' bands", 1);
+    }
     return std::vector{std::move(*file)};
 }
 

@@ -13,10 +13,13 @@ Converted toMerl(const ConversionSource& source, const ConversionWish& wish) {
         return std::vector{ConvertedFile{"", std::move(file.bytes), std::move(file.loss)}};
     }
     if (auto answers = mustAnswer(source, Format::Merl); !answers) return answers.error();
+    if (auto three = mustHaveThree(source, Format::Merl); !three) return three.error();
     const FilledHalfDifference filled = fillHalfDifference(*allBands(source));
     Written written = writeMerl(filled.table, source.about);
     ConvertedFile file{"", std::move(written.bytes), std::move(written.loss)};
     addPlainLosses(file.loss, source);
+    file.loss.add(
+        Loss::Dropped, "rotations of the sample but the first", source.rotationDeg.size() - 1);
     if (source.monochrome()) {
         file.loss.add(Loss::Dropped, "wavelength: one value stands in R, G and B", 1);
     }

@@ -30,6 +30,7 @@ Converted toRgl(const ConversionSource& source, const ConversionWish& wish) {
     const auto* table = mayCopy(source, wish) ? source.file->as<TensorTable>() : nullptr;
     if (table == nullptr) {
         if (auto answers = mustAnswer(source, Format::Rgl); !answers) return answers.error();
+        if (auto three = mustHaveThree(source, Format::Rgl); !three) return three.error();
     }
     const FittedTensor fitted =
         table != nullptr ? FittedTensor{} : fitTensor(*allBands(source), optionsFor(source, wish));

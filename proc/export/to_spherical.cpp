@@ -91,6 +91,9 @@ Converted toSpherical(const ConversionSource& source, const ConversionWish& wish
     const bool own = !hasOwnGrid(wish.to) || (source.file && source.file->format == wish.to);
     if (table != nullptr && own) return one(written(*table, wish, source.about));
     if (auto answers = mustAnswer(source, wish.to); !answers) return answers.error();
+    if (hasOwnGrid(wish.to)) {
+        if (auto three = mustHaveThree(source, wish.to); !three) return three.error();
+    }
     Result<SphericalTable> grid = gridFor(source, wish);
     if (!grid) return grid.error();
     FilledSpherical filled = fillSpherical(*allBands(source), std::move(*grid));
@@ -98,6 +101,10 @@ Converted toSpherical(const ConversionSource& source, const ConversionWish& wish
     Converted files = one(written(filled.table, wish, source.about));
     if (!files) return files;
     addPlainLosses(files->front().loss, source);
+    const bool one = wish.to == Format::Mbsdf;
+    files->front().loss.add(Loss::Dropped,
+                            "rotations of the sample but the first",
+                            one ? source.rotationDeg.size() - 1 : 0);
     addResampling(files->front(), source, {filled.nodes, 0, filled.extrapolated}, wish.to);
     return files;
 }

@@ -52,10 +52,27 @@ ConvertedFile ofBand(const ConversionSource& source,
     return file;
 }
 
+/// The format has no table of the LEDs' bands: a monochrome one of each.
+std::vector<ConvertedFile> bandByBand(const SpecularTable& table, const ConversionSource& source) {
+    std::vector<ConvertedFile> files;
+    const bool colour = !source.about.at("colour").empty();  // sRGB has no wavelengths
+    for (const Band band : kBands) {
+        SpecularTable one = table;
+        one.colour = TableColour::Monochrome;
+        one.planes = {table.planes[index(band)]};
+        files.push_back(written(std::move(one), source, colour ? Channel{} : Channel::of(band)));
+        files.back().suffix = bandSuffix(band);
+    }
+    return files;
+}
+
 }  // namespace
 
 Converted toZemax(const ConversionSource& source, const ConversionWish& wish) {
     const auto* table = mayCopy(source, wish) ? source.file->as<SpecularTable>() : nullptr;
+    if (table != nullptr && table->colour == TableColour::LedBands) {
+        return bandByBand(*table, source);
+    }
     if (table != nullptr) {
         return std::vector{written(*table, source, channelsOf(*source.file).front())};
     }

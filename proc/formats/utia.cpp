@@ -185,7 +185,7 @@ Result<Written> writeUtia(const SphericalTable& table, const Metadata& about) {
     Written out;
     out.bytes.reserve(kBytes);
     for (const double number : numbers) appendLittle(out.bytes, number);
-    out.loss.add(Loss::Masked, "nodes without a finite value, written as 0", missing);
+    out.loss.add(Loss::Clamped, "missing values, written as 0: they read as black", missing);
     out.loss.add(Loss::Dropped, "metadata entries", about.values.size() + about.comments.size());
     return out;
 }

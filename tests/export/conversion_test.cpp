@@ -125,7 +125,9 @@ TEST_P(EveryFormat, MakesTheRoundTripThroughGonio) {
     const ConversionSource source = sourceOfSample();
     const SampleSet& before = *source.file->as<SampleSet>();
     const SampleSet after = gonioAgain(converted(source, trip.format), trip.format);
-    ASSERT_EQ(after.leds.size(), before.leds.size());
+    // UTIA's tables are of several azimuths of the light: the first ones are of azimuth 0.
+    ASSERT_TRUE(after.leds.size() == before.leds.size() || trip.format == Format::Utia);
+    ASSERT_GE(after.leds.size(), before.leds.size());
     double apart = 0;
     double all = 0;
     std::size_t measuredValues = 0;
@@ -159,6 +161,7 @@ TEST_P(EveryFormat, MakesTheRoundTripThroughGonio) {
     const bool rgl = trip.format == Format::Rgl;  // has no place for a missing value: it says so
     EXPECT_TRUE(rgl || made == 0) << made << " values where none was measured";
     RecordProperty("weighted", std::to_string(apart / all));
+    RecordProperty("missing", std::to_string(missing));
     const Metadata was = metadataOf(before.info);
     const Metadata is = metadataOf(after.info);
     for (const auto& [key, value] : was.values) {
