@@ -22,11 +22,6 @@ enum Got : unsigned char {
     Extrapolated = 16
 };
 
-SquarePoint nodeOf(const GridStack& grid, std::size_t i) {
-    return {.x = static_cast<double>(i % grid.width) / static_cast<double>(grid.width - 1),
-            .y = static_cast<double>(i / grid.width) / static_cast<double>(grid.height - 1)};
-}
-
 class Fitter {
 public:
     Fitter(const Scatterer& from, const TensorFitOptions& options)
@@ -63,17 +58,19 @@ private:
     [[nodiscard]] std::size_t lights() const {
         return fitted_.table.phiIn.size() * fitted_.table.thetaIn.size();
     }
+    [[nodiscard]] Radians azimuthOf(std::size_t slice) const {
+        return Radians::fromDegrees(options_.phiInDeg[slice / options_.thetaInDeg.size()]);
+    }
+    /// By the numbers asked for: the file's floats may lie beyond the last incidence of a table.
     [[nodiscard]] Direction lightOf(std::size_t slice) const {
-        const TensorTable& table = fitted_.table;
-        const std::size_t thetas = table.thetaIn.size();
-        return Direction::fromSpherical(Radians(table.thetaIn[slice % thetas]),
-                                        Radians(table.phiIn[slice / thetas]));
+        const double theta = options_.thetaInDeg[slice % options_.thetaInDeg.size()];
+        return Direction::fromSpherical(Radians::fromDegrees(theta), azimuthOf(slice));
     }
     /// An isotropic table counts the azimuth of h from the light's.
     [[nodiscard]] Direction halfOf(const SquarePoint& at, std::size_t slice) const {
         const Direction h = directionOf(at);
         if (!fitted_.table.isotropic()) return h;
-        return h.turned(Radians(fitted_.table.phiIn[slice / fitted_.table.thetaIn.size()]));
+        return h.turned(azimuthOf(slice));
     }
 
     void fillVisibleNormals() {

@@ -16,11 +16,6 @@ constexpr int kIterations = 4;
 constexpr double kLeastDensity = 1e-3 / kPi;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-SquarePoint nodeOf(const GridStack& grid, std::size_t i) {
-    return {.x = static_cast<double>(i % grid.width) / static_cast<double>(grid.width - 1),
-            .y = static_cast<double>(i / grid.width) / static_cast<double>(grid.height - 1)};
-}
-
 /// f(w, w), the mean of the bands; NaN without an answer.
 double retroReflection(const Scatterer& from, const Direction& w) {
     const Answer answer = from.answer({.in = w, .out = w});

@@ -7,6 +7,7 @@
 #include "proc/formats/exr_tile_layout.h"
 #include "proc/formats/exr_tile_pixels.h"
 #include "proc/formats/metadata_text.h"
+#include "proc/table/specular_integral.h"
 
 namespace gonio::proc {
 namespace {
@@ -76,7 +77,12 @@ void appendAttributes(ExrPart& part,
         std::vector<float>& tis = part.numbers["gonioTis" + number];
         const std::vector<TablePlane>& planes = samples[k].table.planes;
         for (std::size_t c = 0; c < part.floats.size(); ++c) {
-            for (const double value : planes[std::min(c, planes.size() - 1)].tis) {
+            const std::size_t plane = std::min(c, planes.size() - 1);
+            for (std::size_t i = 0; i < planes[plane].tis.size(); ++i) {
+                double value = planes[plane].tis[i];
+                if (!std::isfinite(value)) {
+                    value = specularIntegral(samples[k].table, plane, {.incidence = i});
+                }
                 lostTis += std::isfinite(value) ? 0U : 1U;
                 tis.push_back(std::isfinite(value) ? static_cast<float>(value) : 0.0F);
             }
@@ -85,22 +91,40 @@ void appendAttributes(ExrPart& part,
     loss.add(Loss::Dropped, "TIS without a finite value, written as 0", lostTis);
 }
 
+/// As 16 bits hold it: 11 significant bits, fewer below 2^-14; ties to even.
+float asHalf(float value) {
+    const int exponent = std::max(std::ilogb(value), -14);
+    return std::ldexp(std::nearbyint(std::ldexp(value, 10 - exponent)), exponent - 10);
+}
+
 /// Moves what half the bits cannot hold, and counts it.
 void narrow(ExrPart& part, LossReport& loss) {
-    constexpr float kLeastHalf = 2.98e-8F;  // half of the smallest number, which rounds to 0
     std::size_t clamped = 0;
     std::size_t vanished = 0;
+    std::size_t rounded = 0;
+    double largest = 0;
     for (auto& [channel, pixels] : part.floats) {
         for (float& value : pixels) {
             if (std::abs(value) > kMostHalf) {
                 value = std::copysign(kMostHalf, value);
                 ++clamped;
             }
-            vanished += value != 0 && std::abs(value) <= kLeastHalf ? 1U : 0U;
+            if (value == 0) continue;
+            const float held = asHalf(value);
+            vanished += held == 0 ? 1U : 0U;
+            if (held == 0 || held == value) continue;
+            ++rounded;
+            largest =
+                std::max(largest, static_cast<double>(std::abs(held - value) / std::abs(value)));
         }
     }
     loss.add(Loss::Clamped, "values beyond 65504, the most of 16 bits", clamped);
     loss.add(Loss::Masked, "values that are 0 in 16 bits: read as missing", vanished);
+    if (rounded == 0) return;
+    loss.items.push_back({.kind = Loss::Resampled,
+                          .what = "values rounded to 16 bits",
+                          .count = rounded,
+                          .largestError = largest});
 }
 
 }  // namespace

@@ -75,12 +75,15 @@ double storedOf(double f, double scale) {
     return std::max(among((f / scale) * scale), 0.0);
 }
 
-void appendPlane(Written& out, const std::vector<double>& plane, double scale) {
+/// What lies below the horizon is missing in every table: no loss.
+void appendPlane(Written& out, const HalfDifferenceTable& table, std::size_t band) {
+    const double scale = kMerlScale[band];
     std::size_t missing = 0;
     std::size_t negative = 0;
-    for (const double f : plane) {
+    for (std::size_t i = 0; i < table.planes[band].size(); ++i) {
+        const double f = table.planes[band][i];
         const bool none = !std::isfinite(f) || !std::isfinite(f / scale);
-        missing += none ? 1U : 0U;
+        missing += none && aboveHorizon(table.pairAt(table.nodeAt(i))) ? 1U : 0U;
         negative += !none && f < 0 ? 1U : 0U;
         appendLittle(out.bytes, none || f < 0 ? -1.0 : storedOf(f, scale));
     }
@@ -117,7 +120,7 @@ Written writeMerl(const HalfDifferenceTable& table, const Metadata& about) {
         appendLittle(out.bytes, static_cast<std::int32_t>(count));
     }
     for (std::size_t band = 0; band < 3; ++band) {
-        appendPlane(out, table.planes[band], kMerlScale[band]);
+        appendPlane(out, table, band);
     }
     out.loss.add(Loss::Dropped, "metadata entries", about.values.size() + about.comments.size());
     return out;

@@ -81,10 +81,11 @@ private:
         out_.bytes += transmission ? "1\n1\n" : "0\n1\n";
     }
 
-    /// Per cent; empty where neither the table nor its file tells.
+    /// Per cent, as the source says: readers scale the values by it. Else what they add up to;
+    /// empty where neither tells.
     [[nodiscard]] std::optional<double> total(const SphericalBlock& block) const {
-        double percent = perCentOf(blockIntegral(table_, block));
-        if (!std::isfinite(percent)) percent = perCentOf(block.tis);
+        double percent = perCentOf(block.tis);
+        if (!std::isfinite(percent)) percent = perCentOf(blockIntegral(table_, block));
         if (!std::isfinite(percent)) return std::nullopt;
         return std::max(percent, 0.0);
     }

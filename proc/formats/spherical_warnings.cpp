@@ -13,6 +13,14 @@ std::vector<std::string> sphericalWarnings(const SphericalTable& table) {
         negative += std::count_if(block.f.begin(), block.f.end(), [](double f) { return f < 0; });
     }
     if (negative > 0) warnings.push_back(std::to_string(negative) + " negative values");
+    const auto isPlane = [](const SphericalBlock& block) {
+        return block.azimuthDeg.size() == 1 && !block.isRound();
+    };
+    const auto planes = std::count_if(table.blocks.begin(), table.blocks.end(), isPlane);
+    if (planes > 0 && !table.cellCentred) {
+        warnings.push_back(std::to_string(planes) +
+                           " blocks have values at a single azimuth: they answer on it alone");
+    }
     if (auto peak = peakWarning(table)) warnings.push_back(std::move(*peak));
     return warnings;
 }

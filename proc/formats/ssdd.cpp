@@ -113,7 +113,7 @@ private:
             return words.size() == 2 &&
                            (words[1] == "0.1" || words[1] == "0.2" || words[1] == "0.3")
                        ? true
-                       : fail(shown(text) + ", wanted VERSION 0.2 or 0.3");
+                       : fail(shown(text) + ", wanted VERSION 0.1, 0.2 or 0.3");
         }
         if (first) return fail(shown(words[0]) + ", wanted VERSION");
         if (isText(key, text)) return true;
@@ -283,6 +283,11 @@ private:
         }
         if (grid_.symmetrical && grid_.list[1].size() > 1) {
             return fail("bilateral_symmetry of several incoming azimuths is not read");
+        }
+        if (grid_.symmetrical && grid_.list[1].front() != 0) {
+            return fail("bilateral_symmetry of light at azimuth " + shortest(grid_.list[1][0]) +
+                        " (PARAM1_LIST), wanted 0: only there the sides of x and of the light "
+                        "are the same");
         }
         if (grid_.symmetrical && grid_.list[3].back() > 180) {
             return fail("bilateral_symmetry, but PARAM3_LIST goes beyond 180 degrees");

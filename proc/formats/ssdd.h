@@ -1,5 +1,5 @@
 #pragma once
-// SSDD 0.2 and 0.3 (.ssdd), libbsdf's own format [S]: a text header, then up to four blocks of
+// SSDD 0.1 to 0.3 (.ssdd), libbsdf's own format [S]: a text header, then up to four blocks of
 // metadata and a grid, as text or as little-endian float32. One colour per grid point, the grid in
 // the order PARAM3 (outermost), 2, 1, 0.
 //

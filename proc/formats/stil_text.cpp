@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <optional>
@@ -85,16 +86,50 @@ std::size_t placeOf(const std::vector<double>& axis, double at) {
     return static_cast<std::size_t>(std::lower_bound(axis.begin(), axis.end(), at) - axis.begin());
 }
 
-/// The normal is the same direction on the other half of its plane, too.
-void atPole(SphericalBlock& block, std::size_t azimuth, std::size_t theta) {
-    const double across = roundedDegrees(std::fmod(block.azimuthDeg[azimuth] + 180, 360));
-    const std::size_t place = placeOf(block.azimuthDeg, across);
-    if (place == block.azimuthDeg.size() || block.azimuthDeg[place] != across) return;
-    double& f = block.f[block.index(place, theta)];
-    if (std::isnan(f)) f = block.f[block.index(azimuth, theta)];
-}
+/// Values by direction, of which a scan may have several: a place beyond the normal is one before
+/// it at phi + 180, phi 0 is 360, and the normal is at every phi.
+class Directions {
+public:
+    explicit Directions(SphericalBlock& block)
+        : block_(block), counts_(block.f.size(), 0), differs_(block.f.size(), false) {}
 
-SphericalBlock blockOf(const Scan& scan) {
+    /// The mean of what is not 0, which is no signal.
+    void add(std::size_t azimuth, std::size_t theta, double value) {
+        const bool pole = block_.thetaDeg[theta] == 0;
+        const std::size_t at = block_.index(pole ? 0 : azimuth, theta);
+        double& f = block_.f[at];
+        if (std::isnan(f)) {
+            f = value;
+            counts_[at] = value != 0 ? 1 : 0;
+            return;
+        }
+        if (value != f) differs_[at] = true;
+        if (value == 0) return;
+        const double count = ++counts_[at];
+        f += value / count - f / count;  // stays finite: a sum might not
+    }
+    /// Directions of several values that are not the same.
+    std::size_t settle() {
+        if (block_.thetaDeg.front() == 0) {
+            for (std::size_t a = 1; a < block_.azimuthDeg.size(); ++a) {
+                block_.f[block_.index(a, 0)] = block_.f[block_.index(0, 0)];
+            }
+        }
+        return static_cast<std::size_t>(std::count(differs_.begin(), differs_.end(), true));
+    }
+
+private:
+    SphericalBlock& block_;
+    std::vector<std::uint32_t> counts_;
+    std::vector<bool> differs_;
+};
+
+struct ScannedBlock {
+    SphericalBlock block;
+    std::size_t differing = 0;  ///< directions of several values that are not the same
+};
+
+ScannedBlock blockOf(const Scan& scan) {
     SphericalBlock block{.incidenceDeg = *scan.incidence};
     const auto azimuthOf = [&](std::size_t theta, std::size_t phi) {
         const double turned = scan.phi.at(phi) + (scan.theta.at(theta) < -1e-9 ? 180 : 0);
@@ -110,15 +145,16 @@ SphericalBlock blockOf(const Scan& scan) {
     block.azimuthDeg.assign(azimuths.begin(), azimuths.end());
     block.thetaDeg.assign(thetas.begin(), thetas.end());
     block.f.assign(azimuths.size() * thetas.size(), std::numeric_limits<double>::quiet_NaN());
+    Directions directions(block);
     for (std::size_t t = 0; t < scan.thetas; ++t) {
         const std::size_t theta = placeOf(block.thetaDeg, thetaOf(t));
         for (std::size_t p = 0; p < scan.phis; ++p) {
             const std::size_t azimuth = placeOf(block.azimuthDeg, azimuthOf(t, p));
-            block.f[block.index(azimuth, theta)] = scan.values[t * scan.phis + p];
-            if (block.thetaDeg[theta] == 0) atPole(block, azimuth, theta);
+            directions.add(azimuth, theta, scan.values[t * scan.phis + p]);
         }
     }
-    return block;
+    const std::size_t differing = directions.settle();
+    return {std::move(block), differing};
 }
 
 class Reader {
@@ -243,7 +279,8 @@ private:
             return fail(std::to_string(rows) + " rows, header promised " +
                         std::to_string(scan_.thetas));
         }
-        SphericalBlock block = blockOf(scan_);
+        auto [block, differing] = blockOf(scan_);
+        differing_ += differing;
         block.channel = scansOf_[block.incidenceDeg]++;
         if (block.channel == out_.content.channels.size()) {
             out_.content.channels.push_back({"scan " + std::to_string(block.channel + 1), {}});
@@ -266,6 +303,11 @@ private:
             out_.warnings.push_back(std::to_string(zeros_) +
                                     " values of exactly 0: no signal, not black");
         }
+        if (differing_ > 0) {
+            out_.warnings.push_back(std::to_string(differing_) +
+                                    " directions were scanned more than once, with values that "
+                                    "differ: their means are taken");
+        }
         for (std::string& warning : sphericalWarnings(table)) {
             out_.warnings.push_back(std::move(warning));
         }
@@ -280,7 +322,7 @@ private:
     FileRead<SphericalTable> out_{.content = {}, .about = {}};
     std::map<double, std::size_t> scansOf_;
     std::set<std::string> comments_;
-    std::size_t zeros_ = 0;
+    std::size_t zeros_ = 0, differing_ = 0;
     std::optional<Error> error_;
 };
 

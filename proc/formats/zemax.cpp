@@ -11,6 +11,7 @@
 #include "proc/formats/file_bytes.h"
 #include "proc/formats/shown.h"
 #include "proc/formats/words.h"
+#include "proc/table/specular_integral.h"
 
 namespace gonio::proc {
 namespace {
@@ -318,11 +319,17 @@ void appendPlane(Written& out, const SpecularTable& table, std::size_t plane) {
         count += std::isfinite(value) ? 0U : 1U;
         appendShortest(out.bytes, std::isfinite(value) ? value : 0);
     };
+    const auto tisOf = [&](std::size_t light) {
+        if (std::isfinite(values.tis[light])) return values.tis[light];
+        const std::size_t incidences = table.incidenceDeg.size();
+        return specularIntegral(
+            table, plane, {.rotation = light / incidences, .incidence = light % incidences});
+    };
     out.bytes += "\n" + std::string(sectionName(table.colour, plane)) + "\nDataBegin\n";
     for (std::size_t i = 0; i < values.f.size(); ++i) {
         if (i % block == 0) {
             out.bytes += "TIS  ";
-            append(values.tis[i / block], lostTis);
+            append(tisOf(i / block), lostTis);
             out.bytes += '\n';
         }
         append(values.f[i], lost);

@@ -24,8 +24,8 @@ namespace gonio::proc {
 
 /// Not of LedBands, which the format has no place for. The planes must have the sizes of the
 /// axes. Shortest digits that read back to the same double,
-/// so that write-read-write gives the same bytes. What is not finite is written as 0, as the format
-/// wants, and counted.
+/// so that write-read-write gives the same bytes. A TIS that is not known is written as the
+/// integral of the values. What is not finite is written as 0, as the format wants, and counted.
 [[nodiscard]] Written writeZemax(const SpecularTable& table);
 
 /// The comment in which the format's missing wavelength stands: "Wavelength (nm) = 525".

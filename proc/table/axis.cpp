@@ -27,15 +27,19 @@ std::optional<AxisPlace> placeOn(std::span<const double> axis, double at) {
     return AxisPlace{high - 1, high, (at - low) / (axis[high] - low)};
 }
 
+bool closesCircle(std::span<const double> axis) {
+    if (axis.empty()) return false;
+    return axis.front() + kTurn - axis.back() <= 1.5 * widestStep(axis);
+}
+
 std::optional<AxisPlace> placeOnCircle(std::span<const double> axis, double at) {
     if (axis.empty() || !std::isfinite(at)) return std::nullopt;
     at -= kTurn * std::floor((at - axis.front()) / kTurn);  // into [first, first + 360)
     if (const auto inside = placeOn(axis, at)) return inside;
     const double next = axis.front() + kTurn;
     if (next - at <= kSame) return AxisPlace{0, 0, 0};
-    const double gap = next - axis.back();
-    if (gap > 1.5 * widestStep(axis)) return std::nullopt;
-    return AxisPlace{axis.size() - 1, 0, (at - axis.back()) / gap};
+    if (!closesCircle(axis)) return std::nullopt;
+    return AxisPlace{axis.size() - 1, 0, (at - axis.back()) / (next - axis.back())};
 }
 
 }  // namespace gonio::proc

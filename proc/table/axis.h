@@ -20,8 +20,18 @@ struct AxisPlace {
 /// Empty outside [first, last], and on an empty axis.
 [[nodiscard]] std::optional<AxisPlace> placeOn(std::span<const double> axis, double at);
 
+/// Whether an end of an axis, at this distance from the end of its range, is the centre of a cell
+/// that goes on to there: within three quarters of a step.
+[[nodiscard]] constexpr bool endsInACell(double distance, double step) {
+    return distance > 0 && distance < 0.75 * step;
+}
+
+/// Whether the last node of an axis and the first one of the next turn are neighbours: a gap of at
+/// most 1.5 of the widest step.
+[[nodiscard]] bool closesCircle(std::span<const double> axis);
+
 /// The same on a circle of 360: a value between the last node and the first one of the next turn
-/// lies between these two, where they are neighbours (a gap of at most 1.5 of the widest step).
+/// lies between these two, where they are neighbours.
 [[nodiscard]] std::optional<AxisPlace> placeOnCircle(std::span<const double> axis, double at);
 
 }  // namespace gonio::proc

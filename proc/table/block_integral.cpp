@@ -10,6 +10,7 @@ namespace {
 
 /// Weight of each azimuth, in degrees; empty where the axis leaves a gap.
 std::vector<double> azimuthWeights(const SphericalTable& table, const SphericalBlock& block) {
+    if (block.isRound()) return {360};
     const std::vector<double>& axis = block.azimuthDeg;
     const double wanted = table.planeSymmetrical ? 180 : 360;
     std::vector<double> weights(axis.size(), 0);

@@ -20,20 +20,10 @@ double between(const AxisPlace& place, const ValueAt& valueAt) {
     return place.atNode() ? low : (1 - place.t) * low + place.t * valueAt(place.high);
 }
 
-/// Whether an end of an axis is the centre of its cell, so that the axis goes on to the cell's
-/// edge.
-bool endsInACell(double distance, double step) { return distance > 0 && distance < 0.75 * step; }
-
-/// Whether the first radial is the centre of a cell that begins at the pole.
-bool hasOpenPole(const SpecularTable& table) {
-    const std::vector<double>& radials = table.radialDeg;
-    return radials.size() > 1 && endsInACell(radials[0], radials[1] - radials[0]);
-}
-
 /// A radial between the pole, as node `high` of the place, and the first node, as `low`.
 std::optional<AxisPlace> placeRadial(const SpecularTable& table, double radialDeg) {
     if (const auto place = placeOn(table.radialDeg, radialDeg)) return place;
-    if (!hasOpenPole(table) || radialDeg > table.radialDeg.front()) return std::nullopt;
+    if (!table.hasOpenPole() || radialDeg > table.radialDeg.front()) return std::nullopt;
     return AxisPlace{0, kPole, 1 - radialDeg / table.radialDeg.front()};
 }
 

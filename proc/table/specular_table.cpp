@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "proc/core/coordinates.h"
+#include "proc/table/axis.h"
 
 namespace gonio::proc {
 namespace {
@@ -61,6 +62,10 @@ LedBands SpecularTable::bandsAt(TableNode node) const {
         f.value[band] = planes[std::min(band, planes.size() - 1)].f[index(node)];
     }
     return f;
+}
+
+bool SpecularTable::hasOpenPole() const {
+    return radialDeg.size() > 1 && endsInACell(radialDeg[0], radialDeg[1] - radialDeg[0]);
 }
 
 bool SpecularTable::repeatsDirection(TableNode node) const {

@@ -72,6 +72,8 @@ struct SpecularTable {
     [[nodiscard]] bool hasData(TableNode node) const;
     /// f of R, G, B; of a monochrome table the same thrice. Of an XYZ table it is none of them.
     [[nodiscard]] LedBands bandsAt(TableNode node) const;
+    /// The first radial is the centre of a cell that begins at the pole, the mirror direction.
+    [[nodiscard]] bool hasOpenPole() const;
     /// The node's direction stands in the table a second time: the pole of an incidence at another
     /// azimuth than the first, or the azimuth of the first one after a full turn.
     [[nodiscard]] bool repeatsDirection(TableNode node) const;

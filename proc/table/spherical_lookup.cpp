@@ -45,9 +45,10 @@ std::optional<AxisPlace> placeOnArc(const std::vector<double>& axis, double at) 
 
 /// Of even cells: what lies in the outer half of the first or the last cell is taken as its centre.
 double heldInCells(const SphericalTable& table, const std::vector<double>& axis, double at) {
-    if (!table.cellCentred || axis.size() < 2) return at;
+    if (!table.cellCentred) return at;
     constexpr double kRounding = 1e-9;
-    const double half = (axis[1] - axis[0]) / 2 + kRounding;
+    const double cell = axis.size() > 1 ? axis[1] - axis[0] : 2 * std::min(axis[0], 180 - axis[0]);
+    const double half = cell / 2 + kRounding;
     if (at < axis.front() && at >= axis.front() - half) return axis.front();
     if (at > axis.back() && at <= axis.back() + half) return axis.back();
     return at;
@@ -64,6 +65,17 @@ std::optional<AxisPlace> placeAzimuth(const SphericalTable& table,
     }
     if (const auto here = placeOnArc(block.azimuthDeg, azimuth)) return here;
     return placeOnArc(block.azimuthDeg, 2 * table.mirrorAzimuthDeg - azimuth);
+}
+
+/// Of the cells about the normal; NaN where there is no data.
+double ringMean(const SphericalBlock& block, std::size_t theta) {
+    double mean = 0;
+    double count = 0;
+    for (std::size_t a = 0; a < block.azimuthDeg.size(); ++a) {
+        const double f = block.f[block.index(a, theta)];
+        if (!std::isnan(f)) mean += (f - mean) / ++count;
+    }
+    return count > 0 ? mean : kNan;
 }
 
 /// (1 - t) low + t high; what has no weight is not asked, so that its NaN cannot answer.
@@ -161,14 +173,15 @@ SphericalLookup::Value SphericalLookup::inBlock(const SphericalBlock& block,
                                                 const Place& place) const {
     const auto theta = placeOn(block.thetaDeg, heldInCells(table_, block.thetaDeg, place.theta));
     if (!theta) return {kNan, false};
-    if (place.pole && !table_.cellCentred) {
+    if (place.pole && table_.cellCentred) return {ringMean(block, theta->low), false};
+    if (place.pole) {
         for (std::size_t a = 0; a < block.azimuthDeg.size(); ++a) {
             const double f = block.f[block.index(a, theta->low)];
             if (!std::isnan(f)) return {f, true};
         }
         return {kNan, true};
     }
-    const auto azimuth = placeAzimuth(table_, block, place.azimuth);
+    const auto azimuth = block.isRound() ? AxisPlace{} : placeAzimuth(table_, block, place.azimuth);
     if (!azimuth) return {kNan, false};
     return between<Value>(*azimuth, [&](std::size_t a) {
         return between<Value>(*theta, [&](std::size_t t) {

@@ -9,7 +9,8 @@
 // and for wi at or below the horizon: no answer, flag below_horizon. Outside the axes of theta,
 // azimuth and incidence, and where a node that is needed has no data: no answer, without flags; a
 // band is answered where the others are not. Of even cells the outermost values hold to the end of
-// their cells.
+// their cells, and the mean of the first ring stands at the normal. At incidence 0 a block of one
+// azimuth answers for all of them; at others only at its own.
 //
 // At a node: flag and source `measured`; between nodes `interpolated`. Uncertainty is not known.
 

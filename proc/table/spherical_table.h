@@ -31,6 +31,8 @@ struct SphericalBlock {
     /// Fraction of the incident power as the file says, never believed; NaN: not said.
     double tis = std::numeric_limits<double>::quiet_NaN();
 
+    /// One azimuth stands for all: the light comes along the normal.
+    [[nodiscard]] bool isRound() const { return incidenceDeg == 0 && azimuthDeg.size() == 1; }
     [[nodiscard]] std::size_t index(std::size_t azimuth, std::size_t theta) const {
         return azimuth * thetaDeg.size() + theta;
     }

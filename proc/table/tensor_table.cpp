@@ -20,4 +20,9 @@ Direction directionOf(const SquarePoint& at) {
     return Direction::fromSpherical(Radians(at.x * at.x * kPi / 2), Radians((2 * at.y - 1) * kPi));
 }
 
+SquarePoint nodeOf(const GridStack& grid, std::size_t i) {
+    return {.x = static_cast<double>(i % grid.width) / static_cast<double>(grid.width - 1),
+            .y = static_cast<double>(i / grid.width) / static_cast<double>(grid.height - 1)};
+}
+
 }  // namespace gonio::proc

@@ -35,5 +35,7 @@ struct TensorTable {
 [[nodiscard]] SquarePoint squareOf(Radians theta, Radians phi);
 /// The inverse, for tables to be filled.
 [[nodiscard]] Direction directionOf(const SquarePoint& at);
+/// The place of node `i` of a slice, x fastest; the outermost nodes lie on the edges.
+[[nodiscard]] SquarePoint nodeOf(const GridStack& grid, std::size_t i);
 
 }  // namespace gonio::proc

@@ -8,6 +8,7 @@
 #include "proc/formats/rgl.h"
 #include "proc/models/spec.h"
 #include "proc/table/specular_fill.h"
+#include "proc/table/specular_lookup.h"
 #include "proc/table/tensor_bsdf.h"
 #include "tests/support/asymmetric_lobe.h"
 #include "tests/support/plain_rgl.h"
@@ -206,6 +207,36 @@ TEST(TensorFit, FillsWhatHasNoAnswerAndCountsIt) {
     EXPECT_NEAR(back.answer({at(20, 0), at(30, 100)}).f[Band::G], 0.2, 0.004);
     EXPECT_GT(back.answer({at(75, 0), at(30, 180)}).f[Band::G], 0.02);
     EXPECT_EQ(back.answer({at(20, 0), at(30, 100)}).f[Band::B], 0);
+}
+
+/// 30, 45, 60 and 89 degrees are more in single precision than they are.
+TEST(TensorFit, LosesNoIncidenceOfATable) {
+    const auto lobe = model("ggx,alpha=0.3,f0=0.9");
+    const auto flat = model("lambert,albedo=0.5");
+    const auto fitted = [](const Scatterer& from, const std::vector<double>& incidences) {
+        const auto grid = SpecularGrid::oneDegree(incidences, TableSymmetry::PlaneSymmetrical);
+        const auto table = SpecularLookup::over(fillTable(from, grid, Band::R).table);
+        TensorFitOptions options;
+        options.thetaInDeg = incidences;
+        options.side = 16;
+        return fitTensor(*table, options);
+    };
+    const auto filledShare = [](const FittedTensor& fit) {
+        return static_cast<double>(fit.filled) / static_cast<double>(fit.nodes);
+    };
+    // What is filled are views within a step of the table from the horizon.
+    EXPECT_LT(filledShare(fitted(*flat, {0, 30})), 0.05);
+    for (const auto& incidences : {std::vector<double>{0, 20, 40, 60}, {0, 30, 45, 60, 89}}) {
+        const FittedTensor fit = fitted(*lobe, incidences);
+        EXPECT_LT(filledShare(fit), 0.05) << incidences.size();
+        const TensorBsdf back = throughFile(fit.table);
+        for (const double theta : incidences) {
+            if (theta > 80) continue;
+            const LightView mirror{at(theta, 0), at(theta, 180)};
+            const double f = lobe->answer(mirror).f[Band::R];
+            EXPECT_NEAR(back.answer(mirror).f[Band::R], f, 0.1 * f) << theta;
+        }
+    }
 }
 
 TEST(TensorFit, KeepsOneBandAsOneChannel) {

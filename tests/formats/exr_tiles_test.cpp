@@ -203,10 +203,28 @@ TEST(ExrTiles, ReportWhatSixteenBitsCannotHold) {
     table.planes[1].f[table.index({0, 0, 1, 0})] = 1e-9;
     const auto written = encodeExrTiles(table, {}, {.half = true});
     ASSERT_TRUE(written);
-    ASSERT_EQ(written->loss.items.size(), 2U);
+    ASSERT_EQ(written->loss.items.size(), 3U);
     EXPECT_EQ(written->loss.items[0].kind, Loss::Clamped);
     EXPECT_EQ(written->loss.items[1].kind, Loss::Masked);
+    const LossReport::Item& rounded = written->loss.items[2];
+    EXPECT_EQ(rounded.kind, Loss::Resampled);
+    EXPECT_EQ(rounded.what, "values rounded to 16 bits");
     const SpecularTable back = decoded(written).content;
+    std::size_t differing = 0;
+    double largest = 0;
+    for (std::size_t p = 0; p < 3; ++p) {
+        for (std::size_t i = 0; i < back.nodeCount(); ++i) {
+            const double wrote = static_cast<float>(table.planes[p].f[i]);
+            const double f = back.planes[p].f[i];
+            if (f == 0 || f == 65504 || f == wrote) continue;
+            ++differing;
+            largest = std::max(largest, std::abs(f / wrote - 1));
+        }
+    }
+    EXPECT_EQ(rounded.count, differing);
+    EXPECT_NEAR(rounded.largestError.value_or(0), largest, 1e-7);  // floats
+    EXPECT_GT(largest, 0);
+    EXPECT_EQ(encodeExrTiles(back, {}, {.half = true})->loss.items.size(), 0U);
     EXPECT_EQ(back.planes[0].f[back.index({0, 0, 1, 0})], 65504);
     EXPECT_FALSE(back.hasData(1, {0, 0, 1, 0}));
     const double lambert = 0.3 / kPi;

@@ -7,7 +7,10 @@
 #include <limits>
 
 #include "proc/formats/little_endian.h"
+#include "proc/table/block_integral.h"
+#include "proc/table/spherical_lookup.h"
 #include "tests/formats/refusal.h"
+#include "tests/support/spherical_tables.h"
 
 namespace gonio::proc {
 namespace {
@@ -141,6 +144,71 @@ TEST(Mbsdf, DoesNotWriteOtherDirections) {
     table.blocks.pop_back();
     EXPECT_FALSE(writeMbsdf(table));
     EXPECT_FALSE(writeMbsdf(mbsdfGrid({{"X", {}}, {"Y", {}}, {"Z", {}}}, {4, 4})));
+}
+
+template <class Value>
+SphericalTable throughFile(MbsdfShape shape, const Value& value) {
+    SphericalTable table = mbsdfGrid({{}}, shape);
+    for (SphericalBlock& block : table.blocks) {
+        for (std::size_t a = 0; a < block.azimuthDeg.size(); ++a) {
+            for (std::size_t t = 0; t < block.thetaDeg.size(); ++t) {
+                block.f[block.index(a, t)] = value(table.pairAt(block, a, t));
+            }
+        }
+    }
+    auto read = parseMbsdf(writeMbsdf(table)->bytes, "t.mbsdf");
+    EXPECT_TRUE(read);
+    return read->content;
+}
+
+double askedAt(const SphericalTable& table, double thetaI, double thetaO, double apart) {
+    const auto lookup = SphericalLookup::over(table, *bandChannels(table.channels));
+    EXPECT_TRUE(lookup);
+    const auto at = [](double theta, double phi) {
+        return Direction::fromSpherical(Radians::fromDegrees(theta), Radians::fromDegrees(phi));
+    };
+    const Answer answer = lookup->answer({.in = at(thetaI, 33), .out = at(thetaO, 33 + apart)});
+    EXPECT_TRUE(answer.present()) << thetaI << ' ' << thetaO << ' ' << apart;
+    return answer.f[Band::R];
+}
+
+TEST(Mbsdf, AnswersAtTheMirrorDirectionAndOnItsOwnSide) {
+    const auto lobe = [](const LightView& pair) { return test::mirrorLobe(pair, 10); };
+    const SphericalTable table = throughFile({}, lobe);
+    // Of a lobe of 10 degrees two of the four nodes about it are a degree beside the peak, and all
+    // half a degree of azimuth: 0.75 %.
+    for (const double theta : {20.0, 40.0, 60.0}) {
+        EXPECT_NEAR(askedAt(table, theta, theta, 180), 1, 7.5e-3) << theta;
+        EXPECT_NEAR(askedAt(table, theta, theta, -180), 1, 7.5e-3) << theta;
+        EXPECT_LT(askedAt(table, theta, theta, 0), 0.1);
+    }
+}
+
+/// The cells of the ends hold to the normal and to the horizon.
+TEST(Mbsdf, AnswersAtTheNormalAndNearTheHorizon) {
+    const auto byTheta = [](const LightView& pair) {
+        return pair.in.theta().degrees() + 100 * pair.out.theta().degrees();
+    };
+    for (const MbsdfShape shape : {MbsdfShape{}, MbsdfShape{.thetas = 1, .azimuths = 1}}) {
+        const SphericalTable table = throughFile(shape, byTheta);
+        const double first = 45.0 / static_cast<double>(shape.thetas);
+        for (const double apart : {0.0, 0.1, 90.0, 179.9, 180.0, 270.0}) {
+            EXPECT_NEAR(askedAt(table, 0, 0, apart), 101 * first, 1e-3);
+            EXPECT_NEAR(askedAt(table, 89.95, 89.95, apart), 101 * (90 - first), 1e-2);
+            EXPECT_NEAR(askedAt(table, 0, 89.95, apart), first + 100 * (90 - first), 1e-2);
+        }
+    }
+}
+
+TEST(Mbsdf, IntegratesALambertianToItsAlbedo) {
+    for (const MbsdfShape shape : {MbsdfShape{},
+                                   MbsdfShape{.thetas = 7, .azimuths = 5},
+                                   MbsdfShape{.thetas = 1, .azimuths = 1}}) {
+        const SphericalTable table = throughFile(shape, [](const LightView&) { return 0.5 / kPi; });
+        for (const SphericalBlock& block : table.blocks) {
+            EXPECT_NEAR(blockIntegral(table, block), 0.5, 1e-7);  // floats
+        }
+    }
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -113,6 +114,21 @@ TEST(Merl, ReportsWhatItLeavesOut) {
     EXPECT_EQ(dropped, 2U);
     EXPECT_EQ(littleAt<double>(out.bytes, 12), -1);
     EXPECT_TRUE(writeMerl(parsed(smallFile())).loss.items.empty());
+}
+
+TEST(Merl, DoesNotCountNodesBelowTheHorizonAsLost) {
+    HalfDifferenceTable table;
+    table.phiDiffCount = 20;
+    for (auto& plane : table.planes) {
+        for (std::size_t i = 0; i < table.nodeCount(); ++i) {
+            plane.push_back(aboveHorizon(table.pairAt(table.nodeAt(i))) ? 0.25 : kNan);
+        }
+    }
+    EXPECT_GT(
+        std::count_if(
+            table.planes[0].begin(), table.planes[0].end(), [](double f) { return std::isnan(f); }),
+        0);
+    EXPECT_TRUE(writeMerl(table).loss.items.empty());
 }
 
 TEST(Merl, RefusesWhatIsNoSuchFile) {

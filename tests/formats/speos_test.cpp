@@ -317,6 +317,17 @@ TEST(SpeosWriter, StatesTotalsInPerCent) {
     }
 }
 
+TEST(SpeosWriter, KeepsAStatedTotalThatIsNotTheIntegral) {
+    const auto read = parsed(brdf());
+    ASSERT_GT(std::abs(blockIntegral(read.content, read.content.blocks[1]) - 0.5), 0.1);
+    const auto once = writeSpeosBrdf(read.content, read.about);
+    ASSERT_TRUE(once);
+    EXPECT_NE(once->bytes.find("\n40\n2\t"), std::string::npos);
+    const auto again = parsed(once->bytes);
+    EXPECT_EQ(again.content.blocks[1].tis, 0.5);
+    EXPECT_EQ(writeSpeosBrdf(again.content, again.about)->bytes, once->bytes);
+}
+
 TEST(SpeosWriter, KeepsATotalThatOnlyTheFileTells) {
     // The azimuths leave a gap, so that the table has no integral of its own.
     std::string two = anisotropic();

@@ -142,7 +142,7 @@ TEST(SsddReader, RefusesWhatDoesNotFit) {
     };
     EXPECT_TRUE(refuses(parseSsdd("", "in"), {"no brdf or btdf"}));
     EXPECT_TRUE(refuses(wrong("VERSION 0.3\n", ""), {"wanted VERSION"}));
-    EXPECT_TRUE(refuses(wrong("VERSION 0.3", "VERSION 7"), {"wanted VERSION 0.2 or 0.3"}));
+    EXPECT_TRUE(refuses(wrong("VERSION 0.3", "VERSION 7"), {"wanted VERSION 0.1, 0.2 or 0.3"}));
     EXPECT_TRUE(refuses(wrong("0.4\n", "0.3 0.4\n"), {"2 values in a line, wanted 1"}));
     EXPECT_TRUE(refuses(parseSsdd(small() + "0.5\n", "in"), {"'0.5', wanted DATA_TYPE"}));
     EXPECT_TRUE(refuses(wrong("PARAM2_LIST 0 60", "PARAM2_LIST 60 0"), {"must ascend"}));
@@ -164,6 +164,9 @@ TEST(SsddReader, RefusesWhatDoesNotFit) {
         refuses(wrong("PARAM0_LIST", "REDUCTION_TYPE reciprocity\nPARAM0_LIST"), {"reciprocity"}));
     EXPECT_TRUE(refuses(wrong("PARAM0_LIST", "REDUCTION_TYPE bilateral_symmetry\nPARAM0_LIST"),
                         {"beyond 180"}));
+    EXPECT_TRUE(refuses(
+        wrong("PARAM0_LIST", "REDUCTION_TYPE bilateral_symmetry\nPARAM1_LIST 30\nPARAM0_LIST"),
+        {"light at azimuth 30", "wanted 0"}));
 }
 
 TEST(SsddReader, RefusesGridsThatTheFileCannotHold) {

@@ -63,12 +63,30 @@ TEST(StilText, PutsNegativeThetasBeyondTheNormal) {
     EXPECT_EQ(valueAt(table, 0, 100, 30), 2);
     EXPECT_EQ(valueAt(table, 0, 270, 30), 5);
     EXPECT_EQ(valueAt(table, 0, 280, 30), 6);
-    EXPECT_EQ(valueAt(table, 0, 270, 0), 3);
-    EXPECT_EQ(valueAt(table, 0, 90, 0), 3);  // the same direction
-    EXPECT_EQ(valueAt(table, 0, 280, 0), 4);
+    for (const double azimuth : {90, 100, 270, 280}) {
+        EXPECT_EQ(valueAt(table, 0, azimuth, 0), 3.5);  // the same direction
+    }
     EXPECT_EQ(read.about.at(key::kSample), "plate");
-    ASSERT_EQ(read.warnings.size(), 1U);
-    EXPECT_NE(read.warnings[0].find("mirror direction is taken at phi 270"), std::string::npos);
+    ASSERT_EQ(read.warnings.size(), 2U);
+    EXPECT_TRUE(read.warnings[0].starts_with("1 directions were scanned more than once"));
+    EXPECT_NE(read.warnings[1].find("mirror direction is taken at phi 270"), std::string::npos);
+}
+
+TEST(StilText, TakesTheMeanOfADirectionThatIsScannedTwice) {
+    const std::string turned = replaced(replaced(small(), "end :\t-80", "end :\t90"),
+                                        "Phi measure step :\t10",
+                                        "Phi measure step :\t180");
+    const auto read = parsed(turned);
+    const SphericalTable& table = read.content;
+    EXPECT_EQ(table.blocks[0].azimuthDeg, (std::vector<double>{90, 270}));
+    EXPECT_EQ(valueAt(table, 0, 90, 30), 3.5);   // (-30, -90) 1, (30, 90) 6
+    EXPECT_EQ(valueAt(table, 0, 270, 30), 3.5);  // (30, -90) 5, (-30, 90) 2
+    EXPECT_TRUE(read.warnings[0].starts_with("3 directions"));
+    const auto noSignal = parsed(replaced(turned, "30\t5\t6", "30\t5\t0"));
+    EXPECT_EQ(valueAt(noSignal.content, 0, 90, 30), 1);
+    const auto same = parsed(replaced(replaced(turned, "30\t5\t6", "30\t2\t1"), "3\t4", "3\t3"));
+    EXPECT_EQ(valueAt(same.content, 0, 270, 30), 2);
+    EXPECT_EQ(same.warnings.size(), 1U);
 }
 
 TEST(StilText, TakesAnyLineEnd) {
@@ -82,9 +100,9 @@ TEST(StilText, TakesAnyLineEnd) {
 
 TEST(StilText, NeverTakesZerosAndNegativesSilently) {
     const auto read = parsed(replaced(replaced(small(), "3\t4", "0\t-4"), "1\t2", "-1\t0"));
-    ASSERT_EQ(read.warnings.size(), 3U);
+    ASSERT_EQ(read.warnings.size(), 4U);
     EXPECT_EQ(read.warnings[0], "2 values of exactly 0: no signal, not black");
-    EXPECT_EQ(read.warnings[1], "3 negative values");  // theta 0 stands at two azimuths
+    EXPECT_EQ(read.warnings[2], "5 negative values");  // theta 0 stands at four azimuths
 }
 
 TEST(StilText, MakesAChannelOfEachScanOfAnIncidence) {
@@ -172,9 +190,10 @@ TEST(StilText, ReadsTheVendorsExport) {
     EXPECT_EQ(valueAt(table, 3, 90, 30), -33840.56);
     EXPECT_EQ(valueAt(table, 0, 90, 30), 0);
     EXPECT_EQ(read.about.at(key::kSample), "OJN / ART-90-050B-87106_long");
-    ASSERT_EQ(read.warnings.size(), 4U);
+    ASSERT_EQ(read.warnings.size(), 5U);
     EXPECT_EQ(read.warnings[1], "12 values of exactly 0: no signal, not black");
-    EXPECT_NE(read.warnings[2].find("negative values"), std::string::npos);
+    EXPECT_TRUE(read.warnings[2].starts_with("2 directions were"));  // theta 0, at two phis
+    EXPECT_NE(read.warnings[3].find("negative values"), std::string::npos);
 }
 
 }  // namespace

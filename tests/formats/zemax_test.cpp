@@ -9,6 +9,7 @@
 #include <random>
 
 #include "proc/formats/file_bytes.h"
+#include "proc/table/specular_integral.h"
 #include "tests/formats/refusal.h"
 #include "tests/formats/small_files.h"
 #include "tests/support/data_file.h"
@@ -397,11 +398,22 @@ TEST(Zemax, KeepsXyzAsThreePlanes) {
     EXPECT_TRUE(refuses(parseZemax(header + data, "in"), {"line "}));
 }
 
+TEST(Zemax, WritesATotalThatIsNotKnownAsWhatTheValuesAddUpTo) {
+    SpecularTable table = parsed(smallZemax());
+    table.planes[0].tis[1] = kNan;
+    const Written written = writeZemax(table);
+    EXPECT_TRUE(written.loss.items.empty());
+    const double sum = specularIntegral(table, 0, {.incidence = 1});
+    EXPECT_GT(sum, 0);
+    EXPECT_EQ(parsed(written.bytes).planes[0].tis[0], table.planes[0].tis[0]);
+    EXPECT_EQ(parsed(written.bytes).planes[0].tis[1], sum);
+}
+
 TEST(Zemax, WritesWhatIsNotFiniteAsZeroAndCountsIt) {
     SpecularTable table = parsed(smallZemax());
     table.planes[0].f[1] = kNan;
     table.planes[0].f[2] = -kInf;
-    table.planes[0].tis[1] = kNan;
+    table.planes[0].tis[0] = kNan;
     const Written written = writeZemax(table);
     EXPECT_EQ(written.loss.items,
               (std::vector<LossReport::Item>{
@@ -411,7 +423,7 @@ TEST(Zemax, WritesWhatIsNotFiniteAsZeroAndCountsIt) {
     EXPECT_FALSE(back.hasData(0, {0, 0, 0, 1}));
     EXPECT_FALSE(back.hasData(0, {0, 0, 0, 2}));
     EXPECT_TRUE(back.hasData(0, {0, 0, 1, 1}));
-    EXPECT_EQ(back.planes[0].tis[1], 0);
+    EXPECT_EQ(back.planes[0].tis[0], 0);  // the sum is no number either
 }
 
 TEST(Zemax, NamesTheFileThatItCannotRead) {

@@ -49,6 +49,12 @@ TEST(BlockIntegral, ConvergesWithTheStep) {
     EXPECT_NEAR(integral({.thetaDeg = steps(0, 90, 0.25)}, cosine), 2.0 / 3, 1e-5);
 }
 
+TEST(BlockIntegral, TakesASingleAzimuthAtNormalIncidenceForTheCircle) {
+    const SphericalTable table = sphericalTable({.azimuthDeg = {0}}, lambert);
+    EXPECT_NEAR(blockIntegral(table, table.blocks[0]), 0.5, 1e-12);
+    EXPECT_TRUE(std::isnan(blockIntegral(table, table.blocks[1])));
+}
+
 TEST(BlockIntegral, IsNoNumberWhereTheAzimuthsLeaveAGap) {
     EXPECT_TRUE(std::isnan(integral({.azimuthDeg = steps(0, 180, 10)}, lambert)));
     EXPECT_TRUE(std::isnan(integral({.azimuthDeg = {0}}, lambert)));

@@ -45,5 +45,40 @@ TEST(SpecularIntegral, CountsWhatIsMissingAsNothing) {
     EXPECT_EQ(specularIntegral(table, 0, {}), 0);
 }
 
+std::vector<double> centres(double step, double last) {
+    std::vector<double> axis;
+    for (double at = step / 2; at < last; at += step) axis.push_back(at);
+    return axis;
+}
+
+TEST(SpecularIntegral, OfCellsGoesOnToThePoleAndTheMirrorPlane) {
+    for (const bool half : {true, false}) {
+        const SpecularGrid grid{
+            .symmetry = half ? TableSymmetry::PlaneSymmetrical : TableSymmetry::Asymmetrical,
+            .incidenceDeg = {0, 20, 60, 80},
+            .azimuthDeg = centres(1, half ? 180 : 360),
+            .radialDeg = centres(1, 180)};
+        const SpecularTable table = fillTable(Lambert(), grid, Band::R).table;
+        for (std::size_t i = 0; i < 4; ++i) {
+            EXPECT_NEAR(specularIntegral(table, 0, {.incidence = i}), 0.5, 0.5 * 2e-4)
+                << grid.incidenceDeg[i];
+        }
+    }
+}
+
+/// Azimuths 0..180 of a table without symmetry: the other half was not measured.
+TEST(SpecularIntegral, DoesNotCloseAWideGap) {
+    SpecularGrid grid = SpecularGrid::oneDegree({20}, TableSymmetry::PlaneSymmetrical);
+    grid.symmetry = TableSymmetry::Asymmetrical;
+    const SpecularTable half = fillTable(Lambert(), grid, Band::R).table;
+    EXPECT_NEAR(specularIntegral(half, 0, {}), 0.25, 1e-4);
+    grid.azimuthDeg.clear();
+    for (int azimuth = 0; azimuth < 360; ++azimuth) grid.azimuthDeg.push_back(azimuth);
+    const SpecularTable open = fillTable(Lambert(), grid, Band::R).table;
+    EXPECT_NEAR(specularIntegral(open, 0, {}), 0.5, 1e-4);
+    grid.azimuthDeg = {0};
+    EXPECT_EQ(specularIntegral(fillTable(Lambert(), grid, Band::R).table, 0, {}), 0);
+}
+
 }  // namespace
 }  // namespace gonio::proc

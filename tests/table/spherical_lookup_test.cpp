@@ -134,6 +134,17 @@ TEST(SphericalLookup, IsOneDirectionAtThePole) {
     }
 }
 
+TEST(SphericalLookup, TakesASingleAzimuthAtNormalIncidenceForAll) {
+    const SphericalLookup at =
+        lookup(sphericalTable({.incidenceDeg = {0, 20}, .azimuthDeg = {180}}, handed));
+    const double f = at.answer(pairAt(0, 0, 35, 180)).f[Band::R];
+    for (const double azimuth : {0.0, 10.0, 180.0, 299.0}) {
+        EXPECT_EQ(at.answer(pairAt(0, 0, 35, azimuth)).f[Band::R], f) << azimuth;
+    }
+    EXPECT_TRUE(at.answer(pairAt(20, 0, 35, 180)).present());
+    EXPECT_FALSE(at.answer(pairAt(20, 0, 35, 170)).present());
+}
+
 TEST(SphericalLookup, HasNoAnswerOutsideItsAxesOrWithoutData) {
     SphericalTable table = linearTable({.incidenceDeg = {20, 40}, .thetaDeg = steps(10, 80, 5)});
     table.blocks[0].f[table.blocks[0].index(3, 4)] = std::nan("");
