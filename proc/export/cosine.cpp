@@ -28,9 +28,11 @@ private:
 
 void apply(Change& change, BrdfRows& rows) {
     const std::size_t channels = rows.channels.size();
+    Change ofUncertainties = change;  // what is lost is counted once
     for (std::vector<double>* values : {&rows.f, &rows.uRandom, &rows.uSystematic}) {
+        Change& one = values == &rows.f ? change : ofUncertainties;
         for (std::size_t i = 0; i < values->size(); ++i) {
-            change.apply((*values)[i], rows.pairs[i / channels].out);
+            one.apply((*values)[i], rows.pairs[i / channels].out);
         }
     }
 }

@@ -67,6 +67,7 @@ Result<ConversionSource> sourceOf(BrdfFile file, const BandChoice& choice) {
     Result<BrdfFile> kept = chosen(std::move(file), choice);
     if (!kept) return kept.error();
     ConversionSource source{.about = kept->about};
+    source.about.values.erase(std::string(key::kCosine));  // what is written is f
     source.file = std::make_shared<const BrdfFile>(std::move(*kept));
     // X, Y, Z and wavelengths that are no bands can still be copied.
     if (auto bands = bandsOf(*source.file)) {

@@ -49,8 +49,9 @@ Result<Rows> rowsFor(const ConversionSource& source, const ConversionWish& wish)
     return answered(source, wish);
 }
 
-std::vector<ConvertedFile> one(Written file) {
-    return {ConvertedFile{"", std::move(file.bytes), std::move(file.loss)}};
+Converted one(Result<Written> file) {
+    if (!file) return file.error();
+    return std::vector{ConvertedFile{"", std::move(file->bytes), std::move(file->loss)}};
 }
 
 /// A file for each light.
@@ -80,7 +81,7 @@ Converted toRows(const ConversionSource& source, const ConversionWish& wish) {
     Result<Rows> rows = rowsFor(source, wish);
     if (!rows) return rows.error();
     Converted files = written(rows->rows, wish.to, source.about);
-    if (!files || !rows->asked) return files;
+    if (!files || files->empty() || !rows->asked) return files;
     LossReport& loss = files->front().loss;
     loss.items.insert(
         loss.items.begin(),

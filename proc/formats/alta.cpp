@@ -238,6 +238,7 @@ private:
         takeRowNotes(read_.about, rows());
         nameChannels();
         if (input_->isotropic) rows().isotropic = true;
+        if (output_->cosine) read_.about.set(key::kCosine, "yes");
         read_.warnings = negativeValues(rows());
         if (atHorizon_ > 0) {
             read_.warnings.push_back(std::to_string(atHorizon_) +
@@ -274,9 +275,9 @@ public:
     Writer(const BrdfRows& rows, const Metadata& about)
         : rows_(rows), about_(about), projected_(canProject()) {}
 
-    Written write() {
+    Result<Written> write() {
         header();
-        std::size_t missing = 0, beside = 0;
+        std::size_t count = 0, missing = 0, beside = 0;
         const std::size_t channels = rows_.channels.size();
         for (std::size_t pair = 0; pair < rows_.pairs.size(); ++pair) {
             std::size_t there = 0;
@@ -288,10 +289,12 @@ public:
                 beside += there;
                 continue;
             }
+            ++count;
             coordinates(rows_.pairs[pair]);
             for (std::size_t c = 0; c < channels; ++c) put(rows_.f[rows_.index(pair, c)]);
             text_.back() = '\n';
         }
+        if (count == 0 || channels == 0) return noWholeRow("alta");
         Written written{.bytes = std::move(text_), .loss = {}};
         written.loss.add(Loss::Masked, "missing values, left out", missing);
         written.loss.add(Loss::Dropped, "values beside a missing one, left out with it", beside);
@@ -384,7 +387,7 @@ Result<FileRead<BrdfRows>> parseAlta(std::string_view text, std::string_view nam
     return Reader(text, name).read();
 }
 
-Written writeAlta(const BrdfRows& rows, const Metadata& about) {
+Result<Written> writeAlta(const BrdfRows& rows, const Metadata& about) {
     return Writer(rows, about).write();
 }
 

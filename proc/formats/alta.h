@@ -30,6 +30,6 @@ namespace gonio::proc {
 /// f, with the light at phi 0 as ISOTROPIC_TL_TV_PROJ_DPHI, else as SPHERICAL_TL_PL_TV_PV; rounded
 /// to 1e-12. A pair that lacks a channel is left out, which is counted, as are uncertainties and
 /// flags.
-[[nodiscard]] Written writeAlta(const BrdfRows& rows, const Metadata& about);
+[[nodiscard]] Result<Written> writeAlta(const BrdfRows& rows, const Metadata& about);
 
 }  // namespace gonio::proc

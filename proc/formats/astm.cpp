@@ -234,7 +234,7 @@ Result<FileRead<BrdfRows>> parseAstm(std::string_view text, std::string_view nam
     return Reader(text, name).read();
 }
 
-Written writeAstm(const BrdfRows& rows, const Metadata& about) {
+Result<Written> writeAstm(const BrdfRows& rows, const Metadata& about) {
     Written written;
     std::string body;
     std::size_t count = 0, missing = 0, beside = 0;
@@ -263,6 +263,7 @@ Written writeAstm(const BrdfRows& rows, const Metadata& about) {
         }
         body += '\n';
     }
+    if (count == 0 || channels == 0) return noWholeRow("astm");
     written.loss.add(Loss::Masked, "missing values, left out", missing);
     written.loss.add(Loss::Dropped, "values beside a missing one, left out with it", beside);
     countDroppedColumns(rows, written.loss);

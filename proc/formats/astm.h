@@ -21,7 +21,8 @@ namespace gonio::proc {
 [[nodiscard]] Result<FileRead<BrdfRows>> parseAstm(std::string_view text, std::string_view name);
 
 /// Radians rounded to 1e-12. A pair that lacks a channel is left out, which is counted, as are
-/// uncertainties and flags. Metadata without a key of the format stand behind COMMENT.
-[[nodiscard]] Written writeAstm(const BrdfRows& rows, const Metadata& about);
+/// uncertainties and flags; Usage error where none is left. Metadata without a key of the format
+/// stand behind COMMENT.
+[[nodiscard]] Result<Written> writeAstm(const BrdfRows& rows, const Metadata& about);
 
 }  // namespace gonio::proc

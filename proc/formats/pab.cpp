@@ -188,6 +188,7 @@ private:
         read_.about.comments = std::move(told.comments);
         if (upPhi_) read_.about.set(std::string(kForeign) + "upphi", shortest(*upPhi_));
         takeRowNotes(read_.about, rows());
+        if (cosine_) read_.about.set(key::kCosine, "yes");
         read_.warnings = negativeValues(rows());
         const auto warn = [&](std::size_t number, const char* what) {
             if (number > 0) read_.warnings.push_back(std::to_string(number) + what);
@@ -240,6 +241,7 @@ public:
                 add(lights_[i], suffixes_[i] + channelSuffix(c), c, c + 1);
             }
         }
+        if (written_.files.empty()) return noWholeRow("pab");
         written_.loss.add(Loss::Masked, "missing values, left out", missing_);
         written_.loss.add(Loss::Dropped, "values beside a missing one, left out with it", beside_);
         countDroppedColumns(rows_, written_.loss);

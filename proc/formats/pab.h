@@ -35,8 +35,8 @@ struct WrittenPab {
 
 /// A file for each light, side of the surface and channel (X, Y, Z together). Angles rounded to
 /// 1e-9 degrees. Values that are missing are left out; uncertainties and flags have no place.
-/// Usage error for more lights than kMostPabLights: a list of scattered pairs is not what the
-/// format is for.
+/// Usage error where no value is left, and for more lights than kMostPabLights: a list of scattered
+/// pairs is not what the format is for.
 [[nodiscard]] Result<WrittenPab> writePab(const BrdfRows& rows, const Metadata& about);
 
 /// As many as Radiance reads.

@@ -70,6 +70,11 @@ void countDroppedColumns(const BrdfRows& rows, LossReport& loss) {
     loss.add(Loss::Dropped, "flags beside measured", static_cast<std::size_t>(more));
 }
 
+Error noWholeRow(std::string_view format) {
+    return Error{ErrorKind::Usage,
+                 std::string(format) + ": no direction has a value in every channel"};
+}
+
 std::vector<std::string> negativeValues(const BrdfRows& rows) {
     const auto count = std::count_if(rows.f.begin(), rows.f.end(), [](double f) { return f < 0; });
     if (count == 0) return {};

@@ -5,6 +5,9 @@
 //  - symmetry: isotropic or none. Without it, lights of one azimuth are of an isotropic sample.
 //  - wavelengths_nm: of the channels in their order, where their names alone stand in the file.
 
+#include <string_view>
+
+#include "proc/core/result.h"
 #include "proc/formats/loss_report.h"
 #include "proc/table/brdf_rows.h"
 #include "proc/table/metadata.h"
@@ -22,6 +25,10 @@ void takeRowNotes(Metadata& about, BrdfRows& rows);
 
 /// What a format of values alone drops: uncertainties, and flags that say more than measured.
 void countDroppedColumns(const BrdfRows& rows, LossReport& loss);
+
+/// Usage error for rows of which a writer keeps none: "astm: no direction has a value in every
+/// channel". A file without rows is none to its own reader.
+[[nodiscard]] Error noWholeRow(std::string_view format);
 
 /// "3 negative values"; nothing where there are none.
 [[nodiscard]] std::vector<std::string> negativeValues(const BrdfRows& rows);

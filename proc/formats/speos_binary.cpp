@@ -39,6 +39,7 @@ public:
 
     Result<FileRead<SphericalTable>> read() {
         if (!header() || !spectrum() || !tables() || !end()) return *error_;
+        out_.about.set(key::kCosine, "yes");
         settle(out_, SpeosOrigin::Binary);
         return std::move(out_);
     }

@@ -90,6 +90,7 @@ public:
     Result<FileRead<SphericalTable>> read(SpeosKind kind) {
         const bool whole = title() && (kind == SpeosKind::Brdf ? brdf() : anisotropic()) && end();
         if (!whole) return *error_;
+        if (!bsdf_) out_.about.set(key::kCosine, "yes");
         settle(out_, own_ ? SpeosOrigin::OwnText : SpeosOrigin::Text);
         return std::move(out_);
     }

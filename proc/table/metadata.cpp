@@ -1,5 +1,6 @@
 #include "proc/table/metadata.h"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -72,6 +73,16 @@ std::string asItWas(std::string_view line) {
     return text;
 }
 
+/// Has SampleInfo a member of its own for this key?
+bool isMember(std::string_view name) {
+    const auto among = [name](const auto& members) {
+        return std::any_of(members.begin(), members.end(), [name](const auto& member) {
+            return member.first == name;
+        });
+    };
+    return among(kTexts) || among(kSeconds) || among(kShares) || name == kInterruptions;
+}
+
 /// Puts a value into the member that it is of; false for a key without one.
 bool placed(SampleInfo& info, std::string_view name, const std::string& value) {
     for (const auto& [known, member] : kTexts) {
@@ -114,6 +125,7 @@ void Metadata::set(std::string_view name, std::string value) {
 std::vector<std::string> metadataLines(const Metadata& about) {
     std::vector<std::string> lines;
     for (const auto& [name, value] : about.values) {
+        if (name == key::kCosine) continue;
         lines.push_back(std::string(kPrefix) + onOneLine(name) + ": " + onOneLine(value));
     }
     lines.insert(lines.end(), about.comments.begin(), about.comments.end());
@@ -127,6 +139,7 @@ Metadata metadataOfLines(std::span<const std::string> lines) {
         if (line.starts_with(kPrefix) && colon != std::string::npos) {
             const std::string_view name =
                 std::string_view(line).substr(kPrefix.size(), colon - kPrefix.size());
+            if (name == key::kCosine) continue;
             about.set(asItWas(name), asItWas(std::string_view(line).substr(colon + 2)));
         } else {
             about.comments.push_back(line);
@@ -153,7 +166,8 @@ Metadata metadataOf(const SampleInfo& info) {
         if (number && *number >= 0) {
             comments[static_cast<std::size_t>(*number)] = value;
         } else {
-            about.set(std::string(kExtra) + name, value);
+            const bool taken = isMember(name) || name.starts_with(kExtra);
+            about.set(taken ? std::string(kExtra) + name : name, value);
         }
     }
     for (auto& [number, line] : comments) about.comments.push_back(std::move(line));

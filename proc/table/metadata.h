@@ -29,8 +29,9 @@ inline constexpr std::string_view kWavelengths = "wavelengths_nm";          ///<
 inline constexpr std::string_view kSolidAngle = "detector_solid_angle_sr";  ///< of one value
 /// "0": in this file, a format without a mark for it, an exact 0 is a missing value.
 inline constexpr std::string_view kMissing = "missing_is";
-inline constexpr std::string_view kCosine =
-    "cosine";  ///< whether the file's values hold the cosine: "yes", "no"
+/// "yes": the values of the file that was read hold the cosine, by which its reader has divided.
+/// Of that file alone: no text says it, since what is written is f.
+inline constexpr std::string_view kCosine = "cosine";
 }  // namespace key
 
 struct Metadata {
@@ -44,12 +45,13 @@ struct Metadata {
 };
 
 /// "gonio.KEY: VALUE" of each value in the order of keys, then the comments. A line end within a
-/// text is written as \n, a backslash as \\.
+/// text is written as \n, a backslash as \\. Without key::kCosine.
 [[nodiscard]] std::vector<std::string> metadataLines(const Metadata& about);
 /// Back again: lines that are none of ours are comments.
 [[nodiscard]] Metadata metadataOfLines(std::span<const std::string> lines);
 
-/// All that a sample says of itself; infoOf() is the inverse and puts unknown keys into `extra`.
+/// All that a sample says of itself. Names in `extra` that are those of its other members become
+/// "extra.NAME"; infoOf() is the inverse and puts unknown keys into `extra`.
 [[nodiscard]] Metadata metadataOf(const SampleInfo& info);
 [[nodiscard]] SampleInfo infoOf(const Metadata& about);
 

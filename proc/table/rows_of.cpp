@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <tuple>
+#include <vector>
 
 #include "proc/optics/cell_grid.h"
 #include "proc/table/rotations.h"
@@ -46,23 +49,41 @@ void addNode(BrdfRows& rows, const SpecularTable& table, TableNode node) {
     }
 }
 
-bool sharesRows(const SphericalBlock& a, const SphericalBlock& b) {
-    return a.lightAzimuthDeg == b.lightAzimuthDeg && a.incidenceDeg == b.incidenceDeg &&
-           a.transmission == b.transmission && a.azimuthDeg == b.azimuthDeg &&
-           a.thetaDeg == b.thetaDeg;
-}
-
-/// The first of `blocks` from `first` on that does not share its rows or is of a channel again.
-std::size_t groupEnd(const std::vector<SphericalBlock>& blocks, std::size_t first) {
-    std::vector<std::size_t> channels{blocks[first].channel};
-    std::size_t end = first + 1;
-    for (; end < blocks.size() && sharesRows(blocks[first], blocks[end]); ++end) {
-        if (std::find(channels.begin(), channels.end(), blocks[end].channel) != channels.end()) {
-            break;
-        }
-        channels.push_back(blocks[end].channel);
+/// The blocks of one light, side and pair of axes: theirs are the same rows.
+struct SameRows {
+    bool operator()(const SphericalBlock* a, const SphericalBlock* b) const {
+        const auto of = [](const SphericalBlock& block) {
+            return std::tie(block.lightAzimuthDeg,
+                            block.incidenceDeg,
+                            block.transmission,
+                            block.azimuthDeg,
+                            block.thetaDeg);
+        };
+        return of(*a) < of(*b);
     }
-    return end;
+};
+
+using Group = std::vector<const SphericalBlock*>;
+
+/// Blocks of the same rows and of different channels, wherever files have them: one has its
+/// channels outermost, another innermost. A channel that comes again begins another group.
+std::vector<Group> groupsOf(const std::vector<SphericalBlock>& blocks) {
+    struct Places {
+        std::map<std::size_t, std::size_t> times;  ///< that a channel was there
+        std::vector<std::size_t> groups;
+    };
+    std::map<const SphericalBlock*, Places, SameRows> known;
+    std::vector<Group> groups;
+    for (const SphericalBlock& block : blocks) {
+        Places& places = known[&block];
+        const std::size_t time = places.times[block.channel]++;
+        if (time == places.groups.size()) {
+            places.groups.push_back(groups.size());
+            groups.emplace_back();
+        }
+        groups[places.groups[time]].push_back(&block);
+    }
+    return groups;
 }
 
 /// The pole at another azimuth than the first, or the first azimuth after a full turn.
@@ -71,15 +92,15 @@ bool repeatsDirection(const SphericalBlock& block, std::size_t azimuth, std::siz
     return (pole && azimuth > 0) || block.azimuthDeg[azimuth] - block.azimuthDeg.front() >= 360;
 }
 
-void addGroup(BrdfRows& rows, const SphericalTable& table, std::size_t first, std::size_t end) {
-    const SphericalBlock& shared = table.blocks[first];
+void addGroup(BrdfRows& rows, const SphericalTable& table, const Group& group) {
+    const SphericalBlock& shared = *group.front();
     for (std::size_t a = 0; a < shared.azimuthDeg.size(); ++a) {
         for (std::size_t t = 0; t < shared.thetaDeg.size(); ++t) {
             std::vector<double> f(table.channels.size(), kNan);
             bool any = false;
-            for (std::size_t i = first; i < end; ++i) {
-                const double value = table.blocks[i].f[shared.index(a, t)];
-                f[table.blocks[i].channel] = value;
+            for (const SphericalBlock* block : group) {
+                const double value = block->f[shared.index(a, t)];
+                f[block->channel] = value;
                 any = any || !std::isnan(value);
             }
             if (!any || repeatsDirection(shared, a, t)) continue;
@@ -141,11 +162,7 @@ BrdfRows rowsOf(const SphericalTable& table) {
     BrdfRows rows;
     rows.channels = table.channels;
     rows.isotropic = table.isotropic();
-    for (std::size_t first = 0; first < table.blocks.size();) {
-        const std::size_t end = groupEnd(table.blocks, first);
-        addGroup(rows, table, first, end);
-        first = end;
-    }
+    for (const Group& group : groupsOf(table.blocks)) addGroup(rows, table, group);
     return rows;
 }
 

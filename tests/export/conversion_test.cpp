@@ -286,5 +286,48 @@ TEST(Conversion, AsksAtTheGridThatIsWanted) {
     }
 }
 
+TEST(Conversion, RefusesRowsOfWhichNoneIsWhole) {
+    BrdfRows rows;
+    rows.channels = {{"X", {}}, {"Y", {}}, {"Z", {}}};
+    const Direction up = Direction::fromSpherical({}, {});
+    rows.pairs = {{.in = up, .out = up}};
+    rows.f = {1, std::nan(""), 1};
+    const auto source = sourceOf(BrdfFile{.format = Format::Csv, .content = rows}, {});
+    ASSERT_TRUE(source);
+    for (const Format to : {Format::Astm, Format::Alta, Format::Pab}) {
+        const auto files = convertTo(*source, {.to = to});
+        ASSERT_FALSE(files) << name(to);
+        EXPECT_EQ(files.error().kind, ErrorKind::Usage);
+        EXPECT_NE(files.error().message.find("no direction has a value"), std::string::npos);
+    }
+    EXPECT_TRUE(convertTo(*source, {.to = Format::Csv}));
+}
+
+/// By way of a sample, whose own members are not the only ones that come back.
+TEST(Conversion, KeepsWhatABirdFileSaysThroughGonio) {
+    ConversionSource source = sourceOfSample();
+    Metadata said;
+    said.set(key::kSolidAngle, "0.0012");
+    said.set("bird.method", "goniometer");
+    said.set("bird.description", "a tile");
+    said.set("bird.instrumentation.name", "the big one");
+    said.set(key::kRig, "MD2-0007");
+    source.about = said;
+    const auto bird = converted(source, Format::Bird);
+    ASSERT_EQ(bird.size(), 1U);
+    auto first = sourceOf(readBack(bird.front(), Format::Bird), {});
+    ASSERT_TRUE(first);
+    const auto gonio = converted(*first, Format::Gonio);
+    ASSERT_EQ(gonio.size(), 1U);
+    auto second = sourceOf(readBack(gonio.front(), Format::Gonio), {});
+    ASSERT_TRUE(second);
+    const auto again = converted(*second, Format::Bird);
+    ASSERT_EQ(again.size(), 1U);
+    EXPECT_NE(again.front().bytes.find("\"solid_angle\": {\"value\": 0.0012"), std::string::npos);
+    EXPECT_NE(again.front().bytes.find("\"method\": \"goniometer\""), std::string::npos);
+    const Metadata back = readBack(again.front(), Format::Bird).about;
+    for (const auto& [key, value] : said.values) EXPECT_EQ(back.at(key), value) << key;
+}
+
 }  // namespace
 }  // namespace gonio::proc

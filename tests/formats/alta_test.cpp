@@ -41,7 +41,7 @@ FileRead<BrdfRows> parsed(const std::string& text) {
     return read ? std::move(*read) : FileRead<BrdfRows>{};
 }
 std::string written(const FileRead<BrdfRows>& read) {
-    return writeAlta(read.content, read.about).bytes;
+    return writeAlta(read.content, read.about)->bytes;
 }
 
 TEST(Alta, ReadsTheProjectedForm) {
@@ -132,7 +132,9 @@ TEST(Alta, WritesTheSameBytesAgain) {
             about.set(key::kSample, "a");
             about.set("alta.ORIGIN", "somewhere");
             about.comments = {"one", "", "  two"};
-            const Written once = writeAlta(rows, about);
+            const auto made = writeAlta(rows, about);
+            ASSERT_TRUE(made);
+            const Written& once = *made;
             EXPECT_TRUE(once.loss.items.empty());
             const FileRead<BrdfRows> back = parsed(once.bytes);
             expectSameRows(back.content, rows, 0, 3e-12);  // of coordinates rounded to 1e-12
@@ -147,7 +149,7 @@ TEST(Alta, WritesTheSameBytesAgain) {
 TEST(Alta, HoldsModelsAtNodesAndTheirMirror) {
     for (const char* spec : {"lambert,albedo=0.5", "ggx,alpha=0.05,f0=0.9"}) {
         const BrdfRows rows = test::modelRows(spec);
-        const BrdfRows back = parsed(writeAlta(rows, {}).bytes).content;
+        const BrdfRows back = parsed(writeAlta(rows, {})->bytes).content;
         expectSameRows(back, rows, 0, 3e-12);
         if (spec[0] == 'g') test::expectPeaksAtTheMirror(back);
     }
@@ -207,7 +209,9 @@ TEST(Alta, KeepsChannelsOfAnyKind) {
           Channel::ofBands()}) {
         BrdfRows rows = test::asymmetricRows();
         rows.channels = channels;
-        const Written out = writeAlta(rows, {});
+        const auto made = writeAlta(rows, {});
+        ASSERT_TRUE(made);
+        const Written& out = *made;
         EXPECT_TRUE(out.loss.items.empty());
         expectSameRows(parsed(out.bytes).content, rows, 0, 3e-12);
     }
@@ -217,7 +221,9 @@ TEST(Alta, CountsWhatItCannotHold) {
     BrdfRows rows = test::measuredRows();
     rows.channels[0].name = "red";
     rows.f[4] = kNan;
-    const Written out = writeAlta(rows, {});
+    const auto made = writeAlta(rows, {});
+    ASSERT_TRUE(made);
+    const Written& out = *made;
     ASSERT_EQ(out.loss.items.size(), 5U);
     EXPECT_EQ(out.loss.items[0].kind, Loss::Masked);
     EXPECT_EQ(out.loss.items[4].what, "names of channels");
@@ -278,6 +284,18 @@ TEST(Alta, RefusesATextCutWithinItsFirstRow) {
     for (std::size_t size = 0; size <= whole; ++size) {
         EXPECT_TRUE(refuses(parseAlta(text.substr(0, size), "cut"), {"alta: cut: line "})) << size;
     }
+}
+
+TEST(Alta, IsNotWrittenWithoutARow) {
+    BrdfRows rows = test::asymmetricRows();
+    for (std::size_t pair = 0; pair < rows.pairs.size(); ++pair) {
+        rows.f[rows.index(pair, pair % 3)] = kNan;
+    }
+    const auto out = writeAlta(rows, {});
+    ASSERT_FALSE(out);
+    EXPECT_EQ(out.error().kind, ErrorKind::Usage);
+    EXPECT_EQ(out.error().message, "alta: no direction has a value in every channel");
+    EXPECT_FALSE(writeAlta(BrdfRows{}, {}));
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ FileRead<BrdfRows> parsed(const std::string& text) {
     return read ? std::move(*read) : FileRead<BrdfRows>{};
 }
 std::string written(const FileRead<BrdfRows>& read) {
-    return writeAstm(read.content, read.about).bytes;
+    return writeAstm(read.content, read.about)->bytes;
 }
 
 TEST(Astm, ReadsWhatTheFieldWrites) {
@@ -62,7 +62,9 @@ TEST(Astm, WritesTheSameBytesAgain) {
             about.set(key::kSample, "a \"b\"");
             about.set("astm.LAB_NAME", "somewhere");
             about.comments = {"one", "", "two"};
-            const Written once = writeAstm(rows, about);
+            const auto made = writeAstm(rows, about);
+            ASSERT_TRUE(made);
+            const Written& once = *made;
             EXPECT_TRUE(once.loss.items.empty());
             const FileRead<BrdfRows> back = parsed(once.bytes);
             expectSameRows(back.content, rows, 0, 2e-12);  // of radians rounded to 1e-12
@@ -77,7 +79,7 @@ TEST(Astm, WritesTheSameBytesAgain) {
 TEST(Astm, HoldsModelsAtNodesAndTheirMirror) {
     for (const char* spec : {"lambert,albedo=0.5", "ggx,alpha=0.05,f0=0.9"}) {
         const BrdfRows rows = test::modelRows(spec);
-        const BrdfRows back = parsed(writeAstm(rows, {}).bytes).content;
+        const BrdfRows back = parsed(writeAstm(rows, {})->bytes).content;
         expectSameRows(back, rows, 0, 2e-12);
         if (spec[0] == 'g') test::expectPeaksAtTheMirror(back);
     }
@@ -96,12 +98,12 @@ TEST(Astm, KeepsChannelsOfAnyKind) {
           Channel::ofBands()}) {
         BrdfRows rows = test::asymmetricRows();
         rows.channels = channels;
-        expectSameRows(parsed(writeAstm(rows, {}).bytes).content, rows, 0, 2e-12);
+        expectSameRows(parsed(writeAstm(rows, {})->bytes).content, rows, 0, 2e-12);
     }
     BrdfRows one = test::asymmetricRows();
     one.channels = {Channel{}};
     one.f.resize(one.pairs.size());
-    expectSameRows(parsed(writeAstm(one, {}).bytes).content, one, 0, 2e-12);
+    expectSameRows(parsed(writeAstm(one, {})->bytes).content, one, 0, 2e-12);
     const std::string total = replaced(
         replaced(
             replaced(smallAstm(), "465nm,525nm,630nm", "Integrated total"), "0.1,0.2,0.3", "0.1"),
@@ -113,7 +115,9 @@ TEST(Astm, KeepsChannelsOfAnyKind) {
 TEST(Astm, CountsWhatItCannotHold) {
     BrdfRows rows = test::measuredRows();
     rows.f[4] = kNan;
-    const Written out = writeAstm(rows, {});
+    const auto made = writeAstm(rows, {});
+    ASSERT_TRUE(made);
+    const Written& out = *made;
     const std::size_t flagged = (rows.flags.size() + 4) / 5;
     EXPECT_EQ(out.loss.items,
               (std::vector<LossReport::Item>{
@@ -128,7 +132,7 @@ TEST(Astm, KeepsTheHorizonAndTransmission) {
     BrdfRows rows = test::asymmetricRows();
     rows.pairs[3].out = Direction::fromSpherical(130_deg, 20_deg);
     rows.pairs[4].out = *Direction::fromVector({1, 0, 0});
-    const BrdfRows back = parsed(writeAstm(rows, {}).bytes).content;
+    const BrdfRows back = parsed(writeAstm(rows, {})->bytes).content;
     expectSameRows(back, rows, 0, 2e-12);
     EXPECT_LE(back.pairs[4].out.z(), 0);
     EXPECT_NEAR(back.pairs[4].out.z(), 0, 1e-15);
@@ -177,6 +181,18 @@ TEST(Astm, RefusesATextCutAtAnyByte) {
     for (std::size_t size = 0; size + 4 < text.size(); ++size) {
         EXPECT_TRUE(refuses(parseAstm(text.substr(0, size), "cut"), {"astm: cut: line "})) << size;
     }
+}
+
+TEST(Astm, IsNotWrittenWithoutARow) {
+    BrdfRows rows = test::asymmetricRows();
+    for (std::size_t pair = 0; pair < rows.pairs.size(); ++pair) {
+        rows.f[rows.index(pair, pair % 3)] = kNan;
+    }
+    const auto out = writeAstm(rows, {});
+    ASSERT_FALSE(out);
+    EXPECT_EQ(out.error().kind, ErrorKind::Usage);
+    EXPECT_EQ(out.error().message, "astm: no direction has a value in every channel");
+    EXPECT_FALSE(writeAstm(BrdfRows{}, {}));
 }
 
 }  // namespace

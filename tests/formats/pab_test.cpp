@@ -205,5 +205,13 @@ TEST(Pab, RefusesATextCutAtAnyByte) {
     }
 }
 
+TEST(Pab, IsNotWrittenWithoutAValue) {
+    BrdfRows rows = test::asymmetricRows();
+    rows.f.assign(rows.f.size(), kNan);
+    const auto out = writePab(rows, {});
+    ASSERT_FALSE(out);
+    EXPECT_EQ(out.error().kind, ErrorKind::Usage);
+}
+
 }  // namespace
 }  // namespace gonio::proc

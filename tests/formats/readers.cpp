@@ -103,35 +103,16 @@ Complaint ssdd(Bytes bytes) {
 Complaint csv(Bytes bytes) {
     return withMetadata(bytes, proc::parseScatteredCsv, proc::writeScatteredCsv);
 }
-/// Formats whose rows hold all channels: rows of which none does make a file of none, which their
-/// readers refuse.
-template <class Read, class Write>
-Complaint ofWholeRows(Bytes bytes, const Read& read, const Write& write) {
-    return withMetadata(
-        bytes,
-        read,
-        [&](const proc::BrdfRows& rows, const auto& about) -> std::optional<std::string> {
-            for (std::size_t pair = 0; pair < rows.pairs.size(); ++pair) {
-                std::size_t present = 0;
-                for (std::size_t c = 0; c < rows.channels.size(); ++c) {
-                    present += rows.hasData(pair, c) ? 1U : 0U;
-                }
-                if (present == rows.channels.size()) return write(rows, about).bytes;
-            }
-            return std::nullopt;
-        });
-}
-
-Complaint astm(Bytes bytes) { return ofWholeRows(bytes, proc::parseAstm, proc::writeAstm); }
+Complaint astm(Bytes bytes) { return withMetadata(bytes, proc::parseAstm, proc::writeAstm); }
 Complaint pab(Bytes bytes) {
     const auto first = [](const auto& rows, const auto& about) -> std::optional<std::string> {
         const auto written = proc::writePab(rows, about);
-        if (!written || written->files.empty()) return std::nullopt;
+        if (!written) return std::nullopt;
         return written->files[0].bytes;
     };
     return withMetadata(bytes, proc::parsePab, first);
 }
-Complaint alta(Bytes bytes) { return ofWholeRows(bytes, proc::parseAlta, proc::writeAlta); }
+Complaint alta(Bytes bytes) { return withMetadata(bytes, proc::parseAlta, proc::writeAlta); }
 Complaint exrTiles(Bytes bytes) {
     return withMetadata(bytes, proc::decodeExrTiles, [](const auto& table, const auto& about) {
         return proc::encodeExrTiles(table, about);

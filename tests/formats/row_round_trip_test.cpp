@@ -85,10 +85,10 @@ TEST(RowRoundTrip, GivesASampleBackToTheBit) {
     EXPECT_EQ(differing(set, bird, true, false), 0U);
     EXPECT_EQ(bird.info, set.info);
     // These have neither uncertainties nor flags.
-    const SampleSet astm = backThrough(writeAstm(rows, about).bytes, parseAstm);
+    const SampleSet astm = backThrough(writeAstm(rows, about)->bytes, parseAstm);
     EXPECT_EQ(differing(set, astm, false, false), 0U);
     EXPECT_EQ(astm.info, set.info);
-    const SampleSet alta = backThrough(writeAlta(rows, about).bytes, parseAlta);
+    const SampleSet alta = backThrough(writeAlta(rows, about)->bytes, parseAlta);
     EXPECT_EQ(differing(set, alta, false, false), 0U);
     EXPECT_EQ(alta.info, set.info);
 }

@@ -162,7 +162,7 @@ Files soundCsv() {
 }
 
 Files soundAstm() {
-    return {proc::writeAstm(smallRows(Channel::ofBands(), false), smallAbout()).bytes,
+    return {proc::writeAstm(smallRows(Channel::ofBands(), false), smallAbout())->bytes,
             "KEY a value\nNUM_POINTS 2\nVARS theta_i,theta_s,phi_s,550nm,650nm\n"
             "0.1,0.2,-0.3,1,2\n\n0.1,2.2,0.3,-1,2\n"};
 }
@@ -184,7 +184,7 @@ Files soundAlta() {
         "#SAMPLE \"tape\"\n# a comment\n#DIM 3 1\n#VS 0\n"
         "#PARAM_IN ISOTROPIC_TL_TV_PROJ_DPHI\n#PARAM_OUT INV_STERADIAN_COSINE_FACTOR\n"
         "0.25  0.5 0   0.125\n0.25\t0\t-1\t0.5\n";
-    Files files{proc::writeAlta(smallRows(Channel::ofBands(), false), smallAbout()).bytes, cosine};
+    Files files{proc::writeAlta(smallRows(Channel::ofBands(), false), smallAbout())->bytes, cosine};
     for (const char* other : {"RUSIN_TH_TD_PD", "ISOTROPIC_TV_TL_DPHI"}) {
         files.push_back(replaced(cosine, "ISOTROPIC_TL_TV_PROJ_DPHI", other));
     }

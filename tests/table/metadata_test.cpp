@@ -38,5 +38,31 @@ TEST(Metadata, KeepsCommentsInASampleInTheirOrder) {
     EXPECT_EQ(metadataOf(infoOf(about)), about);
 }
 
+TEST(Metadata, KeepsTheNamesOfKeysThatASampleHasNoMemberFor) {
+    Metadata about;
+    about.set(key::kSolidAngle, "0.001");
+    about.set("bird.method", "goniometer");
+    about.set(key::kRig, "MD2-0001");
+    EXPECT_EQ(metadataOf(infoOf(about)), about);
+}
+
+TEST(Metadata, TellsAnExtraFromTheMemberOfItsName) {
+    SampleInfo info = fullInfo();
+    info.extra["rig"] = "simulated";
+    info.extra["interruptions"] = "many";
+    info.extra["extra.rig"] = "twice";
+    EXPECT_EQ(metadataOf(info).at("extra.rig"), "simulated");
+    EXPECT_EQ(metadataOf(info).at(key::kRig), "MD2-0001");
+    EXPECT_EQ(infoOf(metadataOf(info)), info);
+}
+
+TEST(Metadata, HaveNoLineOfTheCosineOfAFileThatWasRead) {
+    Metadata about;
+    about.set(key::kCosine, "yes");
+    EXPECT_TRUE(metadataLines(about).empty());
+    const std::vector<std::string> said{"gonio.cosine: yes"};
+    EXPECT_EQ(metadataOfLines(said), Metadata{});
+}
+
 }  // namespace
 }  // namespace gonio::proc

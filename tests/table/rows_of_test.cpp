@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -235,6 +236,55 @@ TEST(RowsOf, JoinTheBlocksOfASphericalTableByChannel) {
     EXPECT_EQ(missing, 1U);
     table.blocks[2].incidenceDeg = 50;
     EXPECT_EQ(rowsOf(table).pairs.size(), 10U);
+}
+
+/// Two lights, two sides and three channels, in the order that `less` asks for.
+template <class Less>
+SphericalTable inOrder(Less less) {
+    SphericalTable table;
+    table.channels = Channel::ofBands();
+    for (const double incidence : {0.0, 40.0}) {
+        for (const bool transmission : {false, true}) {
+            for (std::size_t channel = 0; channel < 3; ++channel) {
+                SphericalBlock block{
+                    .channel = channel, .incidenceDeg = incidence, .transmission = transmission};
+                block.azimuthDeg = {0, 120, 240};
+                block.thetaDeg =
+                    transmission ? std::vector<double>{120, 180} : std::vector<double>{0, 45};
+                for (std::size_t i = 0; i < 6; ++i) {
+                    block.f.push_back(static_cast<double>(10 * channel + i) + incidence);
+                }
+                table.blocks.push_back(block);
+            }
+        }
+    }
+    std::stable_sort(table.blocks.begin(), table.blocks.end(), less);
+    return table;
+}
+
+TEST(RowsOf, AreTheSameWhicheverOfItsBlocksAFileHasOutermost) {
+    const auto asMade = [](const SphericalBlock&, const SphericalBlock&) { return false; };
+    const auto byChannel = [](const SphericalBlock& a, const SphericalBlock& b) {
+        return a.channel < b.channel;
+    };
+    const BrdfRows innermost = rowsOf(inOrder(asMade));
+    const BrdfRows outermost = rowsOf(inOrder(byChannel));
+    EXPECT_EQ(innermost.pairs.size(), 2U * 2 * 4);  // lights, sides, the pole and three of a ring
+    for (const double f : innermost.f) EXPECT_FALSE(std::isnan(f));
+    ASSERT_EQ(outermost.pairs.size(), innermost.pairs.size());
+    EXPECT_EQ(outermost.f, innermost.f);
+    for (std::size_t i = 0; i < innermost.pairs.size(); ++i) {
+        EXPECT_EQ(outermost.pairs[i].in.vector(), innermost.pairs[i].in.vector()) << i;
+        EXPECT_EQ(outermost.pairs[i].out.vector(), innermost.pairs[i].out.vector()) << i;
+    }
+}
+
+TEST(RowsOf, KeepEachOfTheBlocksThatAFileRepeats) {
+    SphericalTable table =
+        inOrder([](const SphericalBlock&, const SphericalBlock&) { return false; });
+    const std::size_t once = rowsOf(table).pairs.size();
+    table.blocks.push_back(table.blocks.front());
+    EXPECT_EQ(rowsOf(table).pairs.size(), once + 4);
 }
 
 }  // namespace
