@@ -81,8 +81,8 @@ void Program::addFiles() {
     sub->add_option("--to", convert.to, "the output's format, where its extension does not tell");
     sub->add_option("--bands",
                     convert.bands,
-                    "of r,g,b those to keep, or the one that a file of one value is; srgb makes "
-                    "linear sRGB of X, Y, Z");
+                    "of r,g,b those to keep, or the one that a file of one value is; 2 takes the "
+                    "second channel alone (g=2: it is green); srgb makes linear sRGB of X, Y, Z");
     sub->add_option("--grid",
                     convert.grid,
                     "incidences and step of a table in degrees: 0,20,40 or 0:10:80/2 or /0.5");

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "proc/core/colour.h"
+#include "proc/core/number_text.h"
 #include "proc/export/band_rows.h"
+#include "proc/export/one_channel.h"
 #include "proc/table/band_channels.h"
 
 namespace gonio::proc {
@@ -14,7 +17,8 @@ namespace {
 Error wanted(std::string_view text) {
     return {ErrorKind::Usage,
             "--bands '" + std::string(text) +
-                "': wanted some of r,g,b with commas, or srgb for a file of X, Y, Z"};
+                "': wanted some of r,g,b with commas, the number of a channel (2, or g=2 where "
+                "it is green), or srgb for a file of X, Y, Z"};
 }
 
 bool isXyz(const std::vector<Channel>& channels) {
@@ -136,6 +140,13 @@ Result<BandChoice> parseBandChoice(std::string_view text) {
         choice.srgb = true;
         return choice;
     }
+    if (const auto number = parseInteger(text.substr(text.find('=') + 1))) {
+        if (*number < 1) return wanted(text);
+        choice.channel = static_cast<std::size_t>(*number);
+        if (text.find('=') == std::string_view::npos) return choice;
+        text = text.substr(0, text.find('='));
+        if (text.size() != 1) return wanted(text);
+    }
     for (std::size_t i = 0; i < text.size(); i += 2) {
         const auto band = std::find_if(
             kBands.begin(), kBands.end(), [&](Band b) { return letter(b)[0] == text[i]; });
@@ -157,6 +168,17 @@ Result<BrdfFile> chosen(BrdfFile file, const BandChoice& choice) {
         if (!done) return done.error();
         file.about.set("colour", kNote);
         return file;
+    }
+    if (choice.channel) {
+        auto one = withChannelAlone(std::move(file), *choice.channel);
+        if (!one) return one;
+        const std::vector<Band> own = std::exchange(one->bands, {});
+        if (!own.empty() && !choice.bands.empty() && own != choice.bands) {
+            return Error{ErrorKind::Usage,
+                         "--bands: channel " + std::to_string(*choice.channel) +
+                             " of the file is " + Channel::of(own.front()).name};
+        }
+        return chosen(std::move(*one), {.bands = own.empty() ? choice.bands : own});
     }
     if (choice.bands.empty()) return file;
     if (channelsOf(file).size() == 1 && file.as<SampleSet>() == nullptr) {

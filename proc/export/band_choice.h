@@ -1,9 +1,13 @@
 #pragma once
 // --bands: which of a file's values are converted, and as what.
 //   r,g,b or some of them   these bands; of a file of one value: the band that it is
+//   2                       the file's second channel alone, as a file of one value
+//   g=2                     the same, as the band that it is
 //   srgb                    X, Y, Z as linear sRGB
 // A file of wavelengths gives the bands by neighbouring ones (band_channels.h).
 
+#include <cstddef>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -16,6 +20,7 @@ namespace gonio::proc {
 struct BandChoice {
     std::vector<Band> bands;  ///< empty: those of the file
     bool srgb = false;
+    std::optional<std::size_t> channel{};  ///< from 1; beside it at most one band
 };
 
 [[nodiscard]] Result<BandChoice> parseBandChoice(std::string_view text);

@@ -52,7 +52,7 @@ Converted toGonio(const ConversionSource& source, const ConversionWish& wish) {
     if (source.bands.empty()) {
         return Error{ErrorKind::Usage,
                      "one value per pair, and neither its wavelength nor its name tells of which "
-                     "band: say --bands r, g or b"};
+                     "band: say --bands r, g or b (g=2 of the second of several)"};
     }
     const bool copy = mayCopy(source, wish);
     const auto* sample = copy ? source.file->as<SampleSet>() : nullptr;

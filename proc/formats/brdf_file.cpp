@@ -146,11 +146,8 @@ void restoreMissing(BrdfFile& file) {
 std::optional<Band> soleBand(const std::vector<Channel>& channels,
                              const std::filesystem::path& path) {
     if (channels.size() != 1) return std::nullopt;
-    for (const Band band : kBands) {
-        if (channels[0].name == Channel::of(band).name) return band;
-    }
-    if (channels[0].nanometres) return bandOfWavelength(*channels[0].nanometres);
-    return bandOfName(path);
+    const auto band = bandOfChannel(channels[0]);
+    return band || channels[0].nanometres ? band : bandOfName(path);
 }
 
 }  // namespace

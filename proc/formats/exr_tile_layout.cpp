@@ -3,17 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "proc/table/axis.h"
+
 namespace gonio::proc {
 namespace {
 
 /// Degrees: axes that went through other units and back.
 constexpr double kSame = 1e-6;
-
-bool sameAxis(const std::vector<double>& a, const std::vector<double>& b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) {
-        return std::abs(x - y) <= kSame;
-    });
-}
 
 }  // namespace
 
@@ -72,8 +68,8 @@ std::optional<Size> tileSizeOf(const SpecularTable& table) {
     const std::size_t radials = table.radialDeg.size();
     constexpr std::size_t kMost = 1U << 15;
     if (azimuths == 0 || radials == 0 || azimuths > kMost || radials > kMost ||
-        !sameAxis(table.azimuthDeg, centreDegrees(azimuths, half ? 180 : 360)) ||
-        !sameAxis(table.radialDeg, centreDegrees(radials, 180))) {
+        !sameAxis(table.azimuthDeg, centreDegrees(azimuths, half ? 180 : 360), kSame) ||
+        !sameAxis(table.radialDeg, centreDegrees(radials, 180), kSame)) {
         return std::nullopt;
     }
     return Size{static_cast<int>(half ? 2 * azimuths : azimuths), static_cast<int>(radials)};

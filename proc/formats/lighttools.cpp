@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "proc/core/number_text.h"
+#include "proc/formats/far_side.h"
 #include "proc/formats/file_degrees.h"
 #include "proc/formats/shown.h"
 #include "proc/formats/spherical_warnings.h"
@@ -353,16 +354,6 @@ private:
             block.f = std::move(read.f);
             if (block.transmission) turnOver(block);
             table.blocks.push_back(std::move(block));
-        }
-    }
-
-    /// Radial angles of transmission are counted from the far side's normal.
-    static void turnOver(SphericalBlock& block) {
-        std::reverse(block.thetaDeg.begin(), block.thetaDeg.end());
-        for (double& theta : block.thetaDeg) theta = 180 - theta;
-        const auto size = static_cast<std::ptrdiff_t>(block.thetaDeg.size());
-        for (auto row = block.f.begin(); row != block.f.end(); row += size) {
-            std::reverse(row, row + size);
         }
     }
 

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "proc/core/number_text.h"
+#include "proc/formats/far_side.h"
 #include "proc/formats/file_degrees.h"
 #include "proc/formats/lighttools.h"
 #include "proc/table/block_integral.h"
@@ -15,15 +16,6 @@ namespace gonio::proc {
 namespace {
 
 constexpr std::array<std::string_view, 3> kXyz{"X", "Y", "Z"};
-
-std::vector<double> radialsOf(const SphericalBlock& block) {
-    std::vector<double> radials;
-    for (const double theta : block.thetaDeg) {
-        radials.push_back(roundedDegrees(block.transmission ? 180 - theta : theta));
-    }
-    if (block.transmission) std::reverse(radials.begin(), radials.end());
-    return radials;
-}
 
 std::vector<double> azimuthsOf(const SphericalBlock& block) {
     std::vector<double> azimuths;
@@ -79,8 +71,8 @@ private:
             }
             if (blocks_.empty()) {
                 azimuths_ = azimuthsOf(block);
-                radials_ = radialsOf(block);
-            } else if (azimuthsOf(block) != azimuths_ || radialsOf(block) != radials_) {
+                radials_ = thetasFromOwnNormal(block);
+            } else if (azimuthsOf(block) != azimuths_ || thetasFromOwnNormal(block) != radials_) {
                 ++axes;
                 continue;
             }

@@ -9,6 +9,7 @@
 #include "proc/formats/little_endian.h"
 #include "proc/formats/quoted_lines.h"
 #include "proc/formats/shown.h"
+#include "proc/table/axis.h"
 
 namespace gonio::proc {
 namespace {
@@ -187,18 +188,13 @@ std::optional<MbsdfShape> shapeOf(const SphericalTable& table, bool transmission
     return std::nullopt;
 }
 
-bool sameAxis(const std::vector<double>& a, const std::vector<double>& b) {
-    constexpr double kRounding = 1e-9;  // degrees
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) {
-        return std::abs(x - y) <= kRounding;
-    });
-}
-
 bool sameBlock(const SphericalBlock& a, const SphericalBlock& b) {
+    constexpr double kRounding = 1e-9;  // degrees
     return a.channel == b.channel && a.transmission == b.transmission &&
            a.lightAzimuthDeg == b.lightAzimuthDeg && a.f.size() == b.f.size() &&
-           std::abs(a.incidenceDeg - b.incidenceDeg) <= 1e-9 &&
-           sameAxis(a.azimuthDeg, b.azimuthDeg) && sameAxis(a.thetaDeg, b.thetaDeg);
+           std::abs(a.incidenceDeg - b.incidenceDeg) <= kRounding &&
+           sameAxis(a.azimuthDeg, b.azimuthDeg, kRounding) &&
+           sameAxis(a.thetaDeg, b.thetaDeg, kRounding);
 }
 
 /// Why the table is none of the format's; empty when it is.

@@ -55,6 +55,14 @@ std::optional<Band> bandOfWavelength(double nm) {
     return std::nullopt;
 }
 
+std::optional<Band> bandOfChannel(const Channel& channel) {
+    for (const Band band : kBands) {
+        if (channel.name == Channel::of(band).name) return band;
+    }
+    if (!channel.nanometres) return std::nullopt;
+    return bandOfWavelength(*channel.nanometres);
+}
+
 std::optional<double> wavelengthIn(std::span<const std::string> comments) {
     for (const std::string& comment : comments) {
         if (const auto nm = behind("Wavelength (nm) =", comment)) return nm;

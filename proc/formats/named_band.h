@@ -7,6 +7,7 @@
 #include <string>
 
 #include "proc/core/bands.h"
+#include "proc/table/channel.h"
 
 namespace gonio::proc {
 
@@ -14,6 +15,9 @@ namespace gonio::proc {
 [[nodiscard]] std::optional<Band> bandOfName(const std::filesystem::path& file);
 /// The band within 25 nm; empty where there is none.
 [[nodiscard]] std::optional<Band> bandOfWavelength(double nanometres);
+
+/// By its name, else by its wavelength.
+[[nodiscard]] std::optional<Band> bandOfChannel(const Channel& channel);
 
 /// What a comment of the file says of its wavelength in nm, as converters write it: "Wavelength
 /// (nm) = 525"; else "Light source: red laser (650 nm, ...)".

@@ -162,7 +162,7 @@ private:
             !axis(incidenceDeg_, count, kIncidences)) {
             return false;
         }
-        lightAzimuthDeg_ = -angles[0] - 360 * std::floor(-angles[0] / 360);
+        lightAzimuthDeg_ = lightAzimuthOf(angles[0]);
         return std::abs(angles[0]) <= 360 || fail("anisotropy angle " + shortest(angles[0]));
     }
 

@@ -289,8 +289,7 @@ private:
             for (const Turn& turn : perSide[i]) {
                 for (const double incidence : turn.incidenceDeg) {
                     SphericalBlock block{.incidenceDeg = incidence, .transmission = side[i]};
-                    block.lightAzimuthDeg = -turn.angleDeg - 360 * std::floor(-turn.angleDeg / 360);
-                    if (block.lightAzimuthDeg >= 360) block.lightAzimuthDeg = 0;
+                    block.lightAzimuthDeg = lightAzimuthOf(turn.angleDeg);
                     if (!table(std::move(block))) return false;
                 }
             }

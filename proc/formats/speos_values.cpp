@@ -54,6 +54,11 @@ void compareTotals(FileRead<SphericalTable>& read) {
 
 }  // namespace
 
+double lightAzimuthOf(double anisotropyDeg) {
+    const double azimuth = -anisotropyDeg - 360 * std::floor(-anisotropyDeg / 360);
+    return azimuth >= 360 ? 0 : azimuth;  // of a tiny angle by rounding
+}
+
 void divideByCosine(SphericalBlock& block) {
     for (std::size_t t = 0; t < block.thetaDeg.size(); ++t) {
         const double cosine = std::abs(cos(Radians::fromDegrees(block.thetaDeg[t])));

@@ -22,6 +22,9 @@ enum class SpeosOrigin : std::uint8_t {
     Binary
 };
 
+/// In [0, 360): the sample turned by an anisotropy angle has the light at minus that.
+[[nodiscard]] double lightAzimuthOf(double anisotropyDeg);
+
 /// Divides f cos(theta) by the cosine. Where that is 0 to rounding there is no value: NaN.
 void divideByCosine(SphericalBlock& block);
 

@@ -8,7 +8,8 @@
 
 namespace gonio::proc {
 
-/// Negative values, blocks of a single azimuth, and lobes that stand elsewhere than the azimuth convention has them.
+/// Negative values, blocks of a single azimuth, and lobes that stand elsewhere than the azimuth
+/// convention has them.
 [[nodiscard]] std::vector<std::string> sphericalWarnings(const SphericalTable& table);
 
 }  // namespace gonio::proc

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "proc/formats/far_side.h"
 #include "proc/table/spherical_turn.h"
 
 namespace gonio::proc {
@@ -47,18 +48,13 @@ SphericalBlock blockOf(const SsddGrid& grid, std::size_t p0, std::size_t p1, std
                          .azimuthDeg = grid.list[3],
                          .thetaDeg = grid.list[2],
                          .f = {}};
-    const std::size_t thetas = grid.list[2].size();
-    if (grid.transmission) {
-        std::reverse(block.thetaDeg.begin(), block.thetaDeg.end());
-        for (double& theta : block.thetaDeg) theta = 180 - theta;
-    }
-    block.f.reserve(thetas * grid.list[3].size());
+    block.f.reserve(grid.list[2].size() * grid.list[3].size());
     for (std::size_t p3 = 0; p3 < grid.list[3].size(); ++p3) {
-        for (std::size_t t = 0; t < thetas; ++t) {
-            const std::size_t p2 = grid.transmission ? thetas - 1 - t : t;
+        for (std::size_t p2 = 0; p2 < grid.list[2].size(); ++p2) {
             block.f.push_back(grid.values[grid.index(p0, p1, p2, p3) + channel]);
         }
     }
+    if (block.transmission) turnOver(block);
     return block;
 }
 

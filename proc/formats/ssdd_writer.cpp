@@ -7,6 +7,7 @@
 #include <set>
 
 #include "proc/core/number_text.h"
+#include "proc/formats/far_side.h"
 #include "proc/formats/file_degrees.h"
 #include "proc/formats/ssdd.h"
 #include "proc/table/spherical_turn.h"
@@ -136,15 +137,6 @@ private:
         out_.bytes += "\n";
     }
 
-    [[nodiscard]] static std::vector<double> thetasOf(const SphericalBlock& block) {
-        std::vector<double> thetas;
-        for (const double theta : block.thetaDeg) {
-            thetas.push_back(roundedDegrees(block.transmission ? 180 - theta : theta));
-        }
-        if (block.transmission) std::reverse(thetas.begin(), thetas.end());
-        return thetas;
-    }
-
     [[nodiscard]] Grid gridOf(bool transmission, const Colours& colours) {
         Grid grid;
         std::set<double> incidences;
@@ -153,9 +145,10 @@ private:
         for (const SphericalBlock& block : table_.blocks) {
             if (block.transmission != transmission) continue;
             if (kept.empty()) {
-                grid.thetas = thetasOf(block);
+                grid.thetas = thetasFromOwnNormal(block);
                 grid.azimuths = block.azimuthDeg;
-            } else if (thetasOf(block) != grid.thetas || block.azimuthDeg != grid.azimuths) {
+            } else if (thetasFromOwnNormal(block) != grid.thetas ||
+                       block.azimuthDeg != grid.azimuths) {
                 ++dropped_;
                 continue;
             }

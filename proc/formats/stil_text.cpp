@@ -13,24 +13,14 @@
 #include "proc/formats/file_degrees.h"
 #include "proc/formats/shown.h"
 #include "proc/formats/spherical_warnings.h"
+#include "proc/formats/text_lines.h"
 #include "proc/formats/words.h"
 
 namespace gonio::proc {
 namespace {
 
-std::string_view trimmed(std::string_view text) {
-    const std::size_t first = text.find_first_not_of(" \t");
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
 std::vector<std::string_view> fieldsOf(std::string_view line) {
-    std::vector<std::string_view> fields;
-    for (std::size_t at = 0; at <= line.size();) {
-        const std::size_t end = std::min(line.find('\t', at), line.size());
-        fields.push_back(trimmed(line.substr(at, end - at)));
-        at = end + 1;
-    }
+    std::vector<std::string_view> fields = fieldsBetween('\t', line);
     while (!fields.empty() && fields.back().empty()) fields.pop_back();
     return fields;
 }

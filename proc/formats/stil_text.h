@@ -6,10 +6,10 @@
 //
 // Theta of the detector is signed: a negative one lies beyond the normal, at phi + 180. The file
 // does not say where the light is; on this instrument the plane of incidence is phi +-90 and the
-// shadow of the light's arm falls on phi 90, so that the mirror direction is 270. A direction that one
-// scan meets more than once has the mean of what is not 0; an incidence that was scanned more than
-// once gives one channel per scan. Zeros and negative values are what the
-// instrument writes without a signal: they are read, and counted in the warnings.
+// shadow of the light's arm falls on phi 90, so that the mirror direction is 270. A direction that
+// one scan meets more than once has the mean of what is not 0; an incidence that was scanned more
+// than once gives one channel per scan. Zeros and negative values are what the instrument writes
+// without a signal: they are read, and counted in the warnings.
 
 #include <string_view>
 

@@ -17,6 +17,12 @@ double widestStep(std::span<const double> axis) {
 
 }  // namespace
 
+bool sameAxis(std::span<const double> a, std::span<const double> b, double rounding) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [&](double x, double y) {
+        return std::abs(x - y) <= rounding;
+    });
+}
+
 std::optional<AxisPlace> placeOn(std::span<const double> axis, double at) {
     const auto behind = std::upper_bound(axis.begin(), axis.end(), at);
     const auto high = static_cast<std::size_t>(behind - axis.begin());

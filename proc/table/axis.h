@@ -17,6 +17,16 @@ struct AxisPlace {
     [[nodiscard]] bool atNode() const { return low == high; }
 };
 
+/// (1 - t) low + t high; a node of no weight is not asked, so that its NaN cannot answer.
+template <class ValueAt>
+[[nodiscard]] double between(const AxisPlace& place, const ValueAt& valueAt) {
+    const double low = valueAt(place.low);
+    return place.t == 0 ? low : (1 - place.t) * low + place.t * valueAt(place.high);
+}
+
+/// Node by node, to a rounding.
+[[nodiscard]] bool sameAxis(std::span<const double> a, std::span<const double> b, double rounding);
+
 /// Empty outside [first, last], and on an empty axis.
 [[nodiscard]] std::optional<AxisPlace> placeOn(std::span<const double> axis, double at);
 

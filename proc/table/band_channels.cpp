@@ -51,7 +51,8 @@ std::optional<ChannelBlend> about(std::span<const Channel> channels, double nm) 
 Error noBands(std::span<const Channel> channels) {
     return {ErrorKind::Usage,
             "channels " + described(channels) +
-                " are not the bands R, G, B (630, 525, 465 nm): say with --bands which are wanted"};
+                " are not the bands R, G, B (630, 525, 465 nm): --bands 2 takes the second of them "
+                "alone"};
 }
 
 }  // namespace

@@ -34,13 +34,6 @@ AxisPlace placeRound(std::size_t count, double at) {
     return place;
 }
 
-/// (1 - t) low + t high; a node of no weight is not asked, so that its NaN cannot answer.
-template <class ValueAt>
-double between(const AxisPlace& place, const ValueAt& valueAt) {
-    const double low = valueAt(place.low);
-    return place.t == 0 ? low : (1 - place.t) * low + place.t * valueAt(place.high);
-}
-
 struct TablePlace {
     EvenPlace thetaHalf, thetaDiff;
     AxisPlace phiDiff;

@@ -23,21 +23,21 @@ struct Span {
     [[nodiscard]] double panes() const { return std::max(1.0, std::ceil(width() / kPane)); }
 };
 
-std::vector<Span> between(const std::vector<double>& axis) {
+std::vector<Span> spansOf(const std::vector<double>& axis) {
     std::vector<Span> spans;
     for (std::size_t i = 1; i < axis.size(); ++i) spans.push_back({i - 1, i, axis[i - 1], axis[i]});
     return spans;
 }
 
 std::vector<Span> radialsOf(const SpecularTable& table) {
-    std::vector<Span> spans = between(table.radialDeg);
+    std::vector<Span> spans = spansOf(table.radialDeg);
     if (table.hasOpenPole()) spans.push_back({kPole, 0, 0, table.radialDeg.front()});
     return spans;
 }
 
 std::vector<Span> azimuthsOf(const SpecularTable& table) {
     const std::vector<double>& axis = table.azimuthDeg;
-    std::vector<Span> spans = between(axis);
+    std::vector<Span> spans = spansOf(axis);
     if (spans.empty()) return spans;
     const std::size_t last = axis.size() - 1;
     if (table.symmetry != TableSymmetry::PlaneSymmetrical) {

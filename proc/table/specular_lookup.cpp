@@ -13,13 +13,6 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kPole = std::numeric_limits<std::size_t>::max();  ///< of radials
 
-/// (1 - t) low + t high; a node of no weight is not asked, so that its NaN cannot answer.
-template <class ValueAt>
-double between(const AxisPlace& place, const ValueAt& valueAt) {
-    const double low = valueAt(place.low);
-    return place.atNode() ? low : (1 - place.t) * low + place.t * valueAt(place.high);
-}
-
 /// A radial between the pole, as node `high` of the place, and the first node, as `low`.
 std::optional<AxisPlace> placeRadial(const SpecularTable& table, double radialDeg) {
     if (const auto place = placeOn(table.radialDeg, radialDeg)) return place;
