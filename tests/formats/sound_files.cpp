@@ -224,15 +224,6 @@ Files soundRt300s() {
 }
 
 /// A basis of one cap and a ring of two patches.
-Files soundRt300s() {
-    return {
-        "azimuth_deg,incidence_deg,receive_deg,RT\n"
-        "-90,10,-80,0.0022\n-90,10,10,-0.004\n90,30,75.5,1e-3\n",
-        "DataType:\tBRDF(RT-300S)\t \t\rSampleID:\tSample 0\t \t\rDate:\t7/12/2011\t\t\r"
-        "Incidence:\t30\t \t\rPolar:\t-30,30,30\t \t\rAzimuth:\t-90,-80,10\t \t\r"
-        "\t\t\t\rRaw data\t\t\t\r\t-30\t0\t30\r-90\t0\t1.5\t-2\r-80\t3\t4\t5\r"};
-}
-
 Files soundKlems() {
     return {
         "<?xml version=\"1.0\"?>\n<WindowElement xmlns=\"http://windows.lbl.gov\">\n"
