@@ -13,10 +13,11 @@
 #include "proc/formats/file_degrees.h"
 #include "proc/formats/format.h"
 #include "proc/formats/gonio_exr.h"
-#include "proc/formats/points_csv.h"
+#include "proc/formats/scattered_csv.h"
 #include "proc/optics/cell_grid.h"
 #include "proc/quality/verdict.h"
 #include "proc/table/rotations.h"
+#include "proc/table/rows_of.h"
 
 namespace gonio::daemon {
 namespace {
@@ -157,7 +158,9 @@ void printReport(const Merged& merged, const MergeCommandOptions& options) {
 Result<std::string> bytesOf(const Merged& merged, proc::Format format) {
     const bool scattered = merged.sample.leds.empty();
     if (format == proc::Format::Csv) {
-        return scattered ? channelCsv(merged.rows) : proc::sampleCsv(merged.sample);
+        if (scattered) return channelCsv(merged.rows);
+        const proc::Metadata about = proc::metadataOf(merged.sample.info);
+        return proc::writeScatteredCsv(proc::rowsOf(merged.sample), about).bytes;
     }
     if (scattered) {
         return Error{ErrorKind::Usage,

@@ -346,9 +346,8 @@ private:
         if (letters == "X Y Z ") return kOutputs[3].name;
         return kOutputs[0].name;
     }
-    void line(std::string_view keyword, std::string value) {
-        for (char& c : value) c = c == '\n' || c == '\r' ? ' ' : c;
-        text_ += "#" + std::string(keyword) + " " + std::string(trimmed(value)) + "\n";
+    void line(std::string_view keyword, std::string_view value) {
+        text_ += "#" + std::string(keyword) + " " + onOneLine(trimmed(value)) + "\n";
     }
     void header() {
         const std::string_view output = outputName();
@@ -363,16 +362,14 @@ private:
             line(std::string_view(name).substr(kForeign.size()), "\"" + value + "\"");
             rest.values.erase(name);
         }
-        for (std::string comment : metadataLines(rest)) {
-            for (char& c : comment) c = c == '\n' || c == '\r' ? ' ' : c;
-            while (comment.ends_with(' ') || comment.ends_with('\t')) comment.pop_back();
-            text_ += "# " + comment + "\n";
+        for (const std::string& comment : metadataLines(rest)) {
+            text_ += "# " + onOneLine(comment) + "\n";
         }
         const std::size_t inputs = projected_ ? 3 : 4;
         line("DIM", std::to_string(inputs) + " " + std::to_string(rows_.channels.size()));
         line("VS", "0");
         line("PARAM_IN", projected_ ? "ISOTROPIC_TL_TV_PROJ_DPHI" : "SPHERICAL_TL_PL_TV_PV");
-        line("PARAM_OUT", std::string(output));
+        line("PARAM_OUT", output);
     }
 
     const BrdfRows& rows_;

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "proc/core/number_text.h"
+#include "proc/formats/channel_texts.h"
 #include "proc/formats/file_degrees.h"
 #include "proc/formats/row_notes.h"
 #include "proc/formats/shown.h"
@@ -34,11 +35,7 @@ std::string_view withoutQuotes(std::string_view value) {
 }
 
 std::string columnName(const Channel& channel) {
-    std::string name = channel.name;
-    for (char& c : name) {
-        if (c == ',' || c <= ' ') c = '_';
-    }
-    if (!name.empty()) return name;
+    if (!channel.name.empty()) return channel.name;
     if (channel.nanometres) return shortest(*channel.nanometres) + "nm";
     return std::string(kOnlyValue);
 }
@@ -51,6 +48,15 @@ Channel channelNamed(std::string_view name) {
         if (nm) return {"", nm};
     }
     return {std::string(name), std::nullopt};
+}
+
+/// Wavelengths of channels with names stand in the notes.
+Channel plainChannel(const Channel& channel) {
+    std::string name = channel.name;
+    for (char& c : name) {
+        if (c == ',' || static_cast<unsigned char>(c) <= ' ') c = '_';
+    }
+    return {name, name.empty() ? channel.nanometres : std::nullopt};
 }
 
 class Reader {
@@ -198,17 +204,10 @@ private:
     std::optional<Error> error_;
 };
 
-/// One line, without what would end it or not come back.
-std::string onOneLine(std::string_view text) {
-    std::string line(text);
-    for (char& c : line) c = c == '\n' || c == '\r' ? ' ' : c;
-    return std::string(trimmed(line));
-}
-
 std::string headerText(const BrdfRows& rows, const Metadata& about) {
     std::string text;
     const auto put = [&](std::string_view keyword, std::string_view value) {
-        text += std::string(keyword) + " " + onOneLine(value) + "\n";
+        text += std::string(keyword) + " " + onOneLine(trimmed(value)) + "\n";
     };
     for (const auto& [theirs, ours] : kKeys) {
         const std::string_view value = about.at(ours);
@@ -269,7 +268,10 @@ Result<Written> writeAstm(const BrdfRows& rows, const Metadata& about) {
     countDroppedColumns(rows, written.loss);
     written.bytes = headerText(rows, about) + "NUM_POINTS " + std::to_string(count) +
                     "\nVARS theta_i,phi_i,theta_s,phi_s";
-    for (const Channel& channel : rows.channels) written.bytes += "," + columnName(channel);
+    const ChannelTexts columns =
+        channelTexts(rows.channels, {plainChannel, columnName, channelNamed});
+    for (const std::string& column : columns.texts) written.bytes += "," + column;
+    written.loss.add(Loss::Clamped, "names of channels", columns.changed);
     written.bytes += "\n" + body;
     return written;
 }

@@ -109,15 +109,23 @@ private:
             columns_.numbers[Combined] = {
                 true, columns_.constantUnit, std::vector(columns_.entries, *columns_.constantU)};
         }
-        if (!has(Combined)) return true;
-        if (!unitOf(Combined, {"sr^-1", "1/sr", "sr-1", "%"})) return false;
-        std::vector<double>& u = columns_.numbers[Combined].values;
-        for (std::size_t i = 0; i < columns_.entries; ++i) {
-            if (u[i] < 0) return fail("uBRDF: " + shortest(u[i]) + ", wanted 0 or more");
-            if (columns_.numbers[Combined].unit == "%") u[i] *= std::abs(of(Value)[i]) / 100;
+        for (const Number number : {Combined, Random, Systematic}) {
+            if (has(number) && !toInverseSteradians(number)) return false;
         }
-        if (!columns_.coverageIsSaid) {
+        if (has(Combined) && !columns_.coverageIsSaid) {
             columns_.warnings.emplace_back("uBRDF taken as standard uncertainty (k = 1): not said");
+        }
+        return true;
+    }
+    bool toInverseSteradians(Number number) {
+        if (!unitOf(number, {"sr^-1", "1/sr", "sr-1", "%"})) return false;
+        std::vector<double>& u = columns_.numbers[number].values;
+        for (std::size_t i = 0; i < columns_.entries; ++i) {
+            if (u[i] < 0) {
+                return fail(std::string(kNumberNames[number]) + ": " + shortest(u[i]) +
+                            ", wanted 0 or more");
+            }
+            if (columns_.numbers[number].unit == "%") u[i] *= std::abs(of(Value)[i]) / 100;
         }
         return true;
     }

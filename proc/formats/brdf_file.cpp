@@ -27,7 +27,6 @@
 #include "proc/formats/ssdd.h"
 #include "proc/formats/stil_text.h"
 #include "proc/formats/utia.h"
-#include "proc/formats/words.h"
 #include "proc/formats/zemax.h"
 
 namespace gonio::proc {
@@ -70,8 +69,7 @@ auto parseRawUtia(std::string_view bytes, std::string_view name) {
 
 /// Two texts go by the name: LightTools' own, and the export of an instrument.
 auto parseAnyLightTools(std::string_view text, std::string_view name) {
-    const bool stil = lower(text.substr(0, 4096)).find("intensity brdf") != std::string::npos;
-    return stil ? parseStilText(text, name) : parseLightTools(text, name);
+    return isStilText(text) ? parseStilText(text, name) : parseLightTools(text, name);
 }
 
 Result<BrdfFile> ofSsdd(std::string_view bytes, std::string_view name) {
@@ -98,21 +96,6 @@ Result<BrdfFile> ofAtlas(std::string_view bytes, std::string_view name) {
                     .warnings = std::move(one.warnings)};
 }
 
-/// An export of values; readings are no BRDF before black is taken off.
-Result<BrdfFile> ofRt300s(std::string_view bytes, std::string_view name) {
-    if (!isJdv(bytes)) {
-        return Error{ErrorKind::Usage,
-                     std::string(name) +
-                         ": readings of an RT-300S are a BRDF once those of the "
-                         "empty stage are taken off: --black BLANK.csv"};
-    }
-    auto read = parseJdv(bytes, name);
-    if (!read) return read.error();
-    return BrdfFile{.content = tableOfJdv(read->content),
-                    .about = std::move(read->about),
-                    .warnings = std::move(read->warnings)};
-}
-
 constexpr std::array kCodecs{Codec{Format::Gonio, ofGonio},
                              Codec{Format::Zemax, ofZemax},
                              Codec{Format::LightTools, of<parseAnyLightTools>},
@@ -129,7 +112,7 @@ constexpr std::array kCodecs{Codec{Format::Gonio, ofGonio},
                              Codec{Format::Csv, of<parseScatteredCsv>},
                              Codec{Format::ExrTiles, of<decodeExrTiles>},
                              Codec{Format::ExrAtlas, ofAtlas},
-                             Codec{Format::Rt300s, ofRt300s},
+                             Codec{Format::Rt300s, of<parseRt300sTable>},
                              Codec{Format::Klems, of<parseKlems>}};
 
 /// Our own files say where an exact 0 stands for a missing value.

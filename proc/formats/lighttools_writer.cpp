@@ -9,6 +9,7 @@
 #include "proc/formats/far_side.h"
 #include "proc/formats/file_degrees.h"
 #include "proc/formats/lighttools.h"
+#include "proc/formats/text_lines.h"
 #include "proc/table/block_integral.h"
 #include "proc/table/spherical_turn.h"
 
@@ -92,10 +93,8 @@ private:
     }
 
     void header() {
-        for (std::string line : metadataLines(about_)) {
-            std::replace(line.begin(), line.end(), '\n', ' ');
-            std::replace(line.begin(), line.end(), '\r', ' ');
-            out_.bytes += "# " + line + "\n";
+        for (const std::string& line : metadataLines(about_)) {
+            out_.bytes += "# " + onOneLine(line) + "\n";
         }
         out_.bytes += "Symmetry  ";
         out_.bytes += table_.planeSymmetrical ? "PlaneSymmetrical\n" : "Asymmetric\n";

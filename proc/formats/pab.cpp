@@ -232,18 +232,21 @@ public:
                              " light directions: each would be a file"};
         }
         nameFiles();
+        nameChannels();
         for (std::size_t i = 0; i < lights_.size(); ++i) {
             if (isXyz()) {
                 add(lights_[i], suffixes_[i], 0, 3);
                 continue;
             }
             for (std::size_t c = 0; c < rows_.channels.size(); ++c) {
-                add(lights_[i], suffixes_[i] + channelSuffix(c), c, c + 1);
+                add(lights_[i], suffixes_[i] + channelSuffixes_[c], c, c + 1);
             }
         }
         if (written_.files.empty()) return noWholeRow("pab");
-        written_.loss.add(Loss::Masked, "missing values, left out", missing_);
-        written_.loss.add(Loss::Dropped, "values beside a missing one, left out with it", beside_);
+        written_.loss.add(Loss::Masked, "missing values of all its files, left out", missing_);
+        written_.loss.add(Loss::Dropped,
+                          "values of all its files beside a missing one, left out with it",
+                          beside_);
         countDroppedColumns(rows_, written_.loss);
         const auto named = [](const Channel& channel) { return !channel.name.empty(); };
         const auto names = std::count_if(rows_.channels.begin(), rows_.channels.end(), named);
@@ -306,6 +309,16 @@ private:
         return "_" + (name.empty() ? std::to_string(channel + 1) : name);
     }
 
+    /// Names of which only the letters differ that a file's name has not are told by their numbers.
+    void nameChannels() {
+        std::set<std::string> used;
+        for (std::size_t c = 0; c < rows_.channels.size(); ++c) {
+            std::string suffix = channelSuffix(c);
+            while (!used.insert(suffix).second) suffix += "_" + std::to_string(c + 1);
+            channelSuffixes_.push_back(std::move(suffix));
+        }
+    }
+
     /// Channels `first` up to `last`.
     void add(const OneLight& light, std::string suffix, std::size_t first, std::size_t last) {
         std::string body;
@@ -345,30 +358,24 @@ private:
         Metadata rest = withRowNotes(about_, own, true);
         const std::string theta = shortest(light.thetaDeg), phi = shortest(light.phiDeg);
         std::string text;
-        const std::string sample = lineOf(about_.at(key::kSample));
+        const std::string sample = onOneLine(about_.at(key::kSample));
         if (!sample.empty()) text += "#sample_name \"" + sample + "\"\n";
         for (const std::string& line : metadataLines(rest)) {
-            if (!line.starts_with("gonio.pab.")) text += "# " + lineOf(line) + "\n";
+            if (!line.starts_with("gonio.pab.")) text += "# " + onOneLine(line) + "\n";
         }
         text += "#incident_angle " + theta + " " + phi + "\n#intheta " + theta + "\n#inphi " + phi +
                 "\n";
         const std::string_view up = about_.at(std::string(kForeign) + "upphi");
-        if (!up.empty()) text += "#upphi " + lineOf(up) + "\n";
+        if (!up.empty()) text += "#upphi " + onOneLine(up) + "\n";
         if (last - first == 3) text += "#colorimetry: CIE-XYZ\n";
         return text + "#datapoints_in_file: " + std::to_string(count) + "\n#format: theta phi " +
                (light.back ? "BTDF" : "BRDF") + "\n";
-    }
-    static std::string lineOf(std::string_view text) {
-        std::string line(text);
-        for (char& c : line) c = c == '\n' || c == '\r' ? ' ' : c;
-        while (line.ends_with(' ') || line.ends_with('\t')) line.pop_back();
-        return line;
     }
 
     const BrdfRows& rows_;
     const Metadata& about_;
     std::vector<OneLight> lights_;
-    std::vector<std::string> suffixes_;
+    std::vector<std::string> suffixes_, channelSuffixes_;
     WrittenPab written_;
     std::size_t missing_ = 0, beside_ = 0;
 };

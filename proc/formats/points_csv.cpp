@@ -9,10 +9,7 @@
 #include "proc/core/number_text.h"
 #include "proc/formats/csv_rows.h"
 #include "proc/formats/file_bytes.h"
-#include "proc/formats/file_degrees.h"
 #include "proc/formats/shown.h"
-#include "proc/optics/cell_grid.h"
-#include "proc/table/rotations.h"
 
 namespace gonio::proc {
 namespace {
@@ -104,36 +101,6 @@ std::string evalCsv(const Points& points, std::span<const Answer> answers, BandC
         }
         text += "," + std::to_string(answer.flags.mask()) + "," + std::string(name(answer.source));
         text += "\n";
-    }
-    return text;
-}
-
-std::string sampleCsv(const SampleSet& set) {
-    std::string text = "theta_i,phi_i,theta_o,phi_o";
-    for (const char* column : {"f", "u", "u_random", "u_systematic", "flags"}) {
-        for (const std::string& name : perBand(column, BandCount::Three)) text += "," + name;
-    }
-    text += "\n";
-    for (const LedTable& led : set.leds) {
-        const std::string incidence = shortest(fileDegrees(led.incidence)) + "," +
-                                      shortest(fileDegrees(rotationOf(-led.rotation.degrees()))) +
-                                      ",";
-        for (std::size_t cell = 0; cell < CellGrid::count(); ++cell) {
-            const Direction wo = pairInSample(led, CellGrid::centre(cell)).out;
-            text += incidence + shortest(fileDegrees(wo.theta())) + "," +
-                    shortest(fileDegrees(wo.phi()));
-            std::array<Measured<double>, 3> at;
-            for (const Band b : kBands) {
-                const CellSamples& cells = led.bands[index(b)];
-                at[index(b)] = cell < cells.size() ? cells.at(cell) : Measured<double>::missing();
-            }
-            for (const auto& m : at) text += "," + orEmpty(m.value);
-            for (const auto& m : at) text += "," + orEmpty(m.u());
-            for (const auto& m : at) text += "," + orEmpty(m.uRandom);
-            for (const auto& m : at) text += "," + orEmpty(m.uSystematic);
-            for (const auto& m : at) text += "," + std::to_string(m.flags.mask());
-            text += "\n";
-        }
     }
     return text;
 }

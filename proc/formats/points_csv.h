@@ -39,9 +39,4 @@ struct Points {
                                   std::span<const Answer> answers,
                                   BandCount bands);
 
-/// A measured sample as scattered values: one row per LED and cell, in degrees of the sample's own
-/// frame (phi_i is 360 less the rotation), with f_*, the
-/// combined u_*, u_random_*, u_systematic_* and flags_* per band. Missing is empty.
-[[nodiscard]] std::string sampleCsv(const SampleSet& set);
-
 }  // namespace gonio::proc

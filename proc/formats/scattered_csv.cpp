@@ -7,10 +7,12 @@
 #include <utility>
 
 #include "proc/core/number_text.h"
+#include "proc/formats/channel_texts.h"
 #include "proc/formats/csv_rows.h"
 #include "proc/formats/file_degrees.h"
 #include "proc/formats/row_notes.h"
 #include "proc/formats/shown.h"
+#include "proc/formats/text_lines.h"
 
 namespace gonio::proc {
 namespace {
@@ -45,6 +47,19 @@ Channel channelOf(std::string_view suffix) {
     return {std::string(suffix), std::nullopt};
 }
 
+/// `suffix` with its underscore; none for one whose uncertainty would be another's u_random or
+/// u_systematic.
+std::optional<Channel> channelOfColumn(std::string_view suffix) {
+    if (suffix.empty()) return Channel{};
+    if (suffix.starts_with("_random") || suffix.starts_with("_systematic")) return std::nullopt;
+    return channelOf(suffix.substr(1));
+}
+
+/// On one line, without blanks at the end.
+Channel plainChannel(const Channel& channel) {
+    return {onOneLine(channel.name), channel.nanometres};
+}
+
 /// Where a channel's columns are.
 struct ChannelColumns {
     std::size_t f = 0;
@@ -77,11 +92,12 @@ private:
             const bool one = names[i] == "f";
             if (!one && !names[i].starts_with("f_")) continue;
             const std::string suffix = one ? "" : names[i].substr(1);
-            if (suffix.starts_with("_random") || suffix.starts_with("_systematic")) {
+            const std::optional<Channel> channel = channelOfColumn(suffix);
+            if (!channel) {
                 return csv_.fail("column " + printable(names[i]) +
                                  ": its uncertainty would be another's u_random or u_systematic");
             }
-            rows().channels.push_back(one ? Channel{} : channelOf(suffix.substr(1)));
+            rows().channels.push_back(*channel);
             if (!addColumns(i, suffix)) return false;
         }
         if (columns_.empty()) return csv_.fail("no column of values, wanted f, or f_r,f_g,f_b");
@@ -182,7 +198,9 @@ private:
 
 class Writer {
 public:
-    Writer(const BrdfRows& rows, const Metadata& about) : rows_(rows) {
+    Writer(const BrdfRows& rows, const Metadata& about)
+        : rows_(rows),
+          suffixes_(channelTexts(rows.channels, {plainChannel, suffixOf, channelOfColumn})) {
         text_.reserve(rows.pairs.size() * (40 + rows.channels.size() * 90) + 2000);
         comments(about);
         header();
@@ -197,17 +215,15 @@ public:
             text_ += '\n';
         }
         written_.loss.add(Loss::Masked, "values that are not finite, left empty", infinite_);
+        written_.loss.add(Loss::Clamped, "names of channels", suffixes_.changed);
         written_.bytes = std::move(text_);
         return std::move(written_);
     }
 
 private:
     void comments(const Metadata& about) {
-        for (std::string line : metadataLines(withRowNotes(about, rows_, false))) {
-            for (char& c : line) c = c == '\n' || c == '\r' ? ' ' : c;
-            // A blank at the end does not come back.
-            while (line.ends_with(' ') || line.ends_with('\t')) line.pop_back();
-            text_ += "# " + line + "\n";
+        for (const std::string& line : metadataLines(withRowNotes(about, rows_, false))) {
+            text_ += "# " + onOneLine(line) + "\n";
         }
     }
     void header() {
@@ -222,13 +238,7 @@ private:
         text_ += '\n';
     }
     void columns(const std::string& name) {
-        for (std::size_t c = 0; c < rows_.channels.size(); ++c) {
-            std::string suffix = suffixOf(rows_.channels[c]);
-            if (suffix.empty() && rows_.channels.size() > 1) {
-                suffix = "_channel " + std::to_string(c + 1);
-            }
-            text_ += ',' + csvName(name + suffix);
-        }
+        for (const std::string& suffix : suffixes_.texts) text_ += ',' + csvName(name + suffix);
     }
 
     /// The text of a direction is the last row's as long as it does not change.
@@ -272,6 +282,7 @@ private:
     }
 
     const BrdfRows& rows_;
+    ChannelTexts suffixes_;
     std::string text_;
     LastDirection light_, view_;
     std::size_t infinite_ = 0;

@@ -3,7 +3,7 @@
 // columns f, u (combined), u_random, u_systematic (k = 1) and flags (decimal masks), each with the
 // channel's name behind an underscore: f_r, f_g, f_b for the LEDs' bands, f_650nm for a wavelength,
 // f_NAME or f_NAME@650nm else; f alone for one channel of which nothing is known. Missing is empty.
-// What eval and sampleCsv() write is read, other columns are passed over.
+// What eval writes is read, other columns are passed over.
 //
 // Metadata stand in comments (lines that start with #). One of them, "gonio.symmetry: isotropic" or
 // "none", is there where the azimuths alone would tell another: lights of one azimuth are of an

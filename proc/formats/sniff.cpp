@@ -1,12 +1,18 @@
 #include "proc/formats/sniff.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cstring>
 #include <string>
+#include <vector>
 
+#include "proc/formats/csv_rows.h"
 #include "proc/formats/file_bytes.h"
 #include "proc/formats/gonio_exr.h"
 #include "proc/formats/graw_exr.h"
+#include "proc/formats/rt300s.h"
+#include "proc/formats/stil_text.h"
+#include "proc/formats/text_lines.h"
 #include "proc/formats/words.h"
 
 namespace gonio::proc {
@@ -86,23 +92,52 @@ std::optional<Format> binaryFormat(std::string_view head,
     return std::nullopt;
 }
 
-/// Of lower-case text. Words that only one format has come first.
-std::optional<Format> textFormat(std::string_view text) {
+/// The fields of the first line that is neither empty nor a comment.
+std::vector<std::string_view> headerFields(std::string_view text) {
+    TextLines lines(text);
+    while (const auto line = lines.next()) {
+        const std::string_view content = trimmed(*line);
+        if (!content.empty() && content.front() != '#') return csvFields(content);
+    }
+    return {};
+}
+
+/// Tables between commas tell by the names of their columns.
+std::optional<Format> byColumns(std::string_view text) {
+    const std::vector<std::string_view> fields = headerFields(text);
+    const auto has = [&](std::string_view name) {
+        return std::find(fields.begin(), fields.end(), name) != fields.end();
+    };
+    if (has("azimuth_deg") && has("incidence_deg") && has("receive_deg")) return Format::Rt300s;
+    if (has("theta_i") || has("wi_x")) return Format::Csv;
+    // With other separators it is ours all the same: its reader says what is wrong.
+    const bool ours =
+        !fields.empty() && (fields[0].starts_with("theta_i") || fields[0].starts_with("wi_x"));
+    return ours ? std::optional(Format::Csv) : std::nullopt;
+}
+
+bool isJdvOfBrdf(std::string_view text) {
+    return isJdv(text) && contains(lower(text.substr(0, text.find_first_of("\r\n"))), "rt-300s");
+}
+
+/// Of `text` in lower case; what names and comments say counts for nothing. Words that only one
+/// format has come first.
+std::optional<Format> textFormat(std::string_view text, std::string_view asItIs) {
     if (text.starts_with("optis - ")) return Format::Speos;
-    if (contains(text, "<windowelement")) return Format::Klems;
-    const std::size_t first = text.find_first_not_of(" \t\r\n");
-    if (first != std::string_view::npos && text[first] == '{') return Format::Bird;
+    const std::size_t first = std::min(text.find_first_not_of(" \t\r\n"), text.size());
+    if (text.substr(first).starts_with('<') && contains(text, "<windowelement")) {
+        return Format::Klems;
+    }
+    if (text.substr(first).starts_with('{')) return Format::Bird;
+    if (hasLine(text, "vars")) return Format::Astm;
+    if (const auto table = byColumns(text)) return table;
+    if (isJdvOfBrdf(asItIs)) return Format::Rt300s;
+    if (isStilText(asItIs)) return Format::LightTools;
     if (hasLine(text, "data_type") || hasLine(text, "param0_list")) return Format::Ssdd;
     if (hasLine(text, "#param_in") || hasLine(text, "#dim")) return Format::Alta;
-    if (contains(text, "#format:")) return Format::Pab;
+    if (hasLine(text, "#format:")) return Format::Pab;
     if (hasLine(text, "angleofincidence")) return Format::Zemax;
     if (hasLine(text, "aoi") && hasLine(text, "side")) return Format::LightTools;
-    if (contains(text, "intensity brdf")) return Format::LightTools;
-    if (contains(text, "rt-300s") || contains(text, "azimuth_deg,incidence_deg,receive_deg")) {
-        return Format::Rt300s;
-    }
-    if (hasLine(text, "vars")) return Format::Astm;
-    if (contains(text, "theta_i") || contains(text, "wi_x")) return Format::Csv;
     return std::nullopt;
 }
 
@@ -115,7 +150,7 @@ std::optional<Format> sniff(std::string_view head,
     if (head.starts_with(kExrMagic)) return std::nullopt;
     std::string text = lower(head.substr(0, kHead));
     if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
-    if (const auto format = textFormat(text)) return format;
+    if (const auto format = textFormat(text, head.substr(0, kHead))) return format;
     return byExtension(path);
 }
 

@@ -318,6 +318,15 @@ private:
 
 }  // namespace
 
+bool isStilText(std::string_view text) {
+    constexpr std::size_t kHead = 4096;
+    for (Lines lines(text.substr(0, kHead)); !lines.done();) {
+        const auto fields = lines.take();
+        if (!fields.empty() && lower(fields[0]).starts_with("data file type")) return true;
+    }
+    return false;
+}
+
 Result<FileRead<SphericalTable>> parseStilText(std::string_view text, std::string_view name) {
     return Reader(text, name).read();
 }

@@ -19,6 +19,9 @@
 
 namespace gonio::proc {
 
+/// The text has a line "Data file type" among its first ones, as each of these exports does.
+[[nodiscard]] bool isStilText(std::string_view text);
+
 inline constexpr double kStilMirrorDeg = 270;
 
 /// What stands in the header beside angles becomes comments, the sample's name metadata. Errors:

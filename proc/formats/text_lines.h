@@ -19,6 +19,16 @@ namespace gonio::proc {
     return text;
 }
 
+/// On one line of a file: what would end it is a blank, and blanks at its end, which would not come
+/// back, are left out.
+[[nodiscard]] inline std::string onOneLine(std::string_view text) {
+    std::string line(text);
+    std::replace_if(
+        line.begin(), line.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+    while (line.ends_with(' ') || line.ends_with('\t')) line.pop_back();
+    return line;
+}
+
 /// Fields between `separator`, trimmed; `reuse` is room from the last line.
 [[nodiscard]] inline std::vector<std::string_view> fieldsBetween(
     char separator, std::string_view line, std::vector<std::string_view> reuse = {}) {

@@ -10,6 +10,7 @@
 #include "proc/core/number_text.h"
 #include "proc/formats/file_bytes.h"
 #include "proc/formats/shown.h"
+#include "proc/formats/text_lines.h"
 #include "proc/formats/words.h"
 #include "proc/table/specular_integral.h"
 
@@ -301,11 +302,7 @@ void appendAxis(std::string& text, const AxisRule& rule, const std::vector<doubl
 
 void appendComments(std::string& text, const std::vector<std::string>& comments) {
     for (const std::string& comment : comments) {
-        std::string line = comment;
-        for (char& c : line) {
-            if (c == '\n' || c == '\r') c = ' ';
-        }
-        text += "# " + line + "\n";
+        text += "# " + onOneLine(comment) + "\n";
     }
 }
 

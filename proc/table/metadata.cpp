@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "proc/core/number_text.h"
@@ -155,7 +156,8 @@ Metadata metadataOf(const SampleInfo& info) {
         if (info.*member != 0) about.set(name, shortest(info.*member));
     }
     for (const auto& [name, member] : kShares) {
-        if (info.*member) about.set(name, shortest(*(info.*member)));
+        const std::optional<double> share = info.*member;
+        if (share && std::isfinite(*share)) about.set(name, shortest(*share));
     }
     if (info.interruptions > 0) about.set(kInterruptions, std::to_string(info.interruptions));
     std::map<std::size_t, std::string> comments;

@@ -18,7 +18,7 @@ namespace {
 
 Result<BrdfData> fromCsv(const std::string& text, const DataOptions& options = {}) {
     const auto points = parseScatteredCsv(text, "test");
-    EXPECT_TRUE(points) << points.error().message;
+    if (!points) return points.error();
     return fitDataOf(points->content, options);
 }
 
@@ -119,12 +119,15 @@ TEST(BrdfData, BadFilesAreRefused) {
     for (const std::string& text : {head + "\n1,2,3,4\n",
                                     head + ",f\n1,2,3,4,banana\n",
                                     head + ",f,u\n1,2,3,4,0.5,x\n",
-                                    head + ",f_r,f_g\n1,2,3,4,0.5,0.5\n",
                                     head + ",f,flags\n1,2,3,4,0.5,?\n"}) {
         const auto data = fromCsv(text);
         ASSERT_FALSE(data) << text;
         EXPECT_EQ(data.error().kind, ErrorKind::File);
     }
+    // A file that is sound, of which no band's values are known.
+    const auto two = fromCsv(head + ",f_r,f_g\n1,2,3,4,0.5,0.5\n");
+    ASSERT_FALSE(two);
+    EXPECT_EQ(two.error().kind, ErrorKind::Usage);
 }
 
 TEST(BrdfData, AZemaxTableGivesEachDirectionOnce) {
@@ -187,13 +190,16 @@ TEST(BrdfData, FlagsOfABandLeaveThatBandOut) {
     ASSERT_TRUE(data) << data.error().message;
     EXPECT_EQ(data->valueCount(), 2U);
     EXPECT_TRUE(std::isnan(data->rows[0].f[1]));
-    // One of three, or both kinds: nobody knows what they are of.
-    for (const std::string flags : {"flags_r", "flags,flags_r,flags_g"}) {
-        const std::string columns = "theta_i,phi_i,theta_o,phi_o,f_r,f_g,f_b," + flags;
-        const std::string masks = flags == "flags_r" ? "1" : "1,1,1";
-        const auto odd = fromCsv(columns + "\n0,0,10,0,1,2,3," + masks + "\n");
-        EXPECT_FALSE(odd) << flags;
-    }
+    // A band without flags of its own has the common ones, or was measured where it has a value.
+    const std::string columns = "theta_i,phi_i,theta_o,phi_o,f_r,f_g,f_b,";
+    const auto red = fromCsv(columns + "flags_r\n0,0,10,0,1,2,3," + saturated + "\n");
+    ASSERT_TRUE(red) << red.error().message;
+    EXPECT_TRUE(std::isnan(red->rows[0].f[0]));
+    EXPECT_EQ(red->valueCount(), 2U);
+    const auto common = fromCsv(columns + "flags,flags_r\n0,0,10,0,1,2,3," + saturated + ",1\n");
+    ASSERT_TRUE(common) << common.error().message;
+    EXPECT_EQ(common->rows[0].f[0], 1);
+    EXPECT_EQ(common->valueCount(), 1U);
     for (const char* mask : {"-1", "2.5", "1e9", "nan"}) {
         const auto bad = fromCsv(head + "0,0,10,0,1,2,3,1,1,1,1," + mask + ",1\n");
         ASSERT_FALSE(bad) << mask;

@@ -195,5 +195,27 @@ TEST(Astm, IsNotWrittenWithoutARow) {
     EXPECT_FALSE(writeAstm(BrdfRows{}, {}));
 }
 
+TEST(Astm, NumbersNamesThatWouldNotComeBack) {
+    BrdfRows rows = test::asymmetricRows();
+    const auto names = [&](const std::vector<Channel>& channels, std::size_t changed) {
+        rows.channels = channels;
+        const auto out = writeAstm(rows, {});
+        EXPECT_TRUE(out);
+        const std::vector<LossReport::Item> lost{{Loss::Clamped, "names of channels", changed}};
+        EXPECT_EQ(out->loss.items, changed > 0 ? lost : std::vector<LossReport::Item>{});
+        std::vector<std::string> back;
+        for (const Channel& channel : parsed(out->bytes).content.channels) {
+            back.push_back(channel.name);
+        }
+        return back;
+    };
+    using Names = std::vector<std::string>;
+    EXPECT_EQ(names({{"a\nb", {}}, {"a b", {}}, {"a_b", {}}}, 3),
+              (Names{"a_b", "channel_2_a_b", "channel_3_a_b"}));
+    EXPECT_EQ(names({{"BRDF", {}}, {"550nm", {}}, {"x", {}}}, 2),
+              (Names{"channel_1_BRDF", "channel_2_550nm", "x"}));
+    EXPECT_EQ(names({{}, {}, {"", 550}}, 0), (Names{"channel_1", "channel_2", ""}));
+}
+
 }  // namespace
 }  // namespace gonio::proc

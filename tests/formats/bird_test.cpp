@@ -355,5 +355,27 @@ TEST(Bird, RefusesChannelsThatWouldFillNoTable) {
     EXPECT_TRUE(refuses(parseBird(text, "in"), {"5000 values at 5000 direction pairs"}));
 }
 
+TEST(Bird, ChecksAndConvertsThePartsOfAnUncertainty) {
+    const auto text = [](const std::string& unit, const std::string& values) {
+        return replaced(smallBird(),
+                        R"("values": [1, 1, 2, 2]}
+ })",
+                        R"("values": [1, 1, 2, 2]},
+  "adhoc_variables": {
+   "u_random": {"unit": ")" +
+                            unit + R"(", "values": )" + values + R"(},
+   "u_systematic": {"unit": "%", "values": [4, 4, 4, 4]}}
+ })");
+    };
+    const BrdfRows rows = parsed(text("%", "[1, 1, 2, 2]")).content;
+    ASSERT_EQ(rows.uRandom.size(), 4U);
+    EXPECT_NEAR(rows.uRandom[2], 0.01, 1e-15);
+    EXPECT_NEAR(rows.uSystematic[2], 0.02, 1e-15);
+    EXPECT_EQ(parsed(text("sr^-1", "[1, 1, 2, 2]")).content.uRandom[2], 2);
+    EXPECT_TRUE(refuses(parseBird(text("m", "[1, 1, 2, 2]"), "in"), {"u_random: unit 'm'"}));
+    EXPECT_TRUE(
+        refuses(parseBird(text("%", "[1, 1, -2, 2]"), "in"), {"u_random: -2, wanted 0 or more"}));
+}
+
 }  // namespace
 }  // namespace gonio::proc

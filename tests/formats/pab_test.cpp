@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <set>
 
 #include "tests/formats/refusal.h"
 #include "tests/formats/row_lists.h"
@@ -147,7 +148,8 @@ TEST(Pab, CountsWhatItCannotHold) {
     rows.f[4] = kNan;
     const WrittenPab out = written(rows);
     ASSERT_EQ(out.loss.items.size(), 4U);
-    EXPECT_EQ(out.loss.items[0], (LossReport::Item{Loss::Masked, "missing values, left out", 1}));
+    EXPECT_EQ(out.loss.items[0],
+              (LossReport::Item{Loss::Masked, "missing values of all its files, left out", 1}));
     EXPECT_EQ(out.loss.items[1].what, "uncertainties");
     EXPECT_EQ(out.loss.items[2].what, "flags beside measured");
 }
@@ -211,6 +213,15 @@ TEST(Pab, IsNotWrittenWithoutAValue) {
     const auto out = writePab(rows, {});
     ASSERT_FALSE(out);
     EXPECT_EQ(out.error().kind, ErrorKind::Usage);
+}
+
+TEST(Pab, GivesEachChannelAFileOfItsOwnName) {
+    BrdfRows rows = test::asymmetricRows();
+    rows.channels = {{"a b", {}}, {"A_B", {}}, {"c", {}}};
+    std::set<std::string> suffixes;
+    const WrittenPab out = written(rows);
+    for (const PabFile& file : out.files) suffixes.insert(file.suffix);
+    EXPECT_EQ(suffixes.size(), out.files.size());
 }
 
 }  // namespace

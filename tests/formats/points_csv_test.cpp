@@ -286,37 +286,5 @@ TEST(EvalCsv, IsItsHeaderAloneWithoutPoints) {
               "wi_x,wi_y,wi_z,wo_x,wo_y,wo_z,f,flags,source\n");
 }
 
-TEST(SampleCsv, ListsEveryCellOfEveryLedAtItsCentre) {
-    const SampleSet set = test::sampleSet(
-        [](Radians i, const Direction& wo) { return 0.1 + 0.01 * i.value() + 0.02 * wo.x(); });
-    const std::string text = sampleCsv(set);
-    const Points points = parsed(text);
-    EXPECT_EQ(points.columns.size(), 4U + 5 * 3);
-    EXPECT_EQ(points.columns[4], "f_r");
-    EXPECT_EQ(points.columns[7], "u_r");
-    EXPECT_EQ(points.columns[18], "flags_b");
-    ASSERT_EQ(points.pairs.size(), 4 * CellGrid::count());
-    for (std::size_t i = 0; i < points.pairs.size(); ++i) {
-        const std::size_t cell = i % CellGrid::count();
-        ASSERT_EQ(CellGrid::cellAt(points.pairs[i].out), cell);
-        ASSERT_NEAR(points.pairs[i].in.theta().value(),
-                    set.leds[i / CellGrid::count()].incidence.value(),
-                    1e-15);
-    }
-}
-
-TEST(SampleCsv, LeavesWhatIsMissingEmptyAndLosesNoBit) {
-    SampleSet set = test::smallSample();
-    CellSamples& g = set.leds[0].bands[index(Band::G)];
-    g.f[0] = 1.0 / 3;
-    g.uRandom[0] = 0.3;
-    g.uSystematic[0] = 0.4;
-    const std::vector<std::string> lines = linesOf(sampleCsv(set));
-    ASSERT_EQ(lines.size(), 1 + CellGrid::count());
-    EXPECT_TRUE(lines[1].starts_with("20,0,0.5,60,,0.3333333333333333,,,0.5,,,0.3,,,0.4,,0,1,0"))
-        << lines[1];
-    EXPECT_TRUE(lines.back().ends_with(",,,,,,,,,,,,,0,8,0")) << lines.back();
-}
-
 }  // namespace
 }  // namespace gonio::proc

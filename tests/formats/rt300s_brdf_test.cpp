@@ -9,6 +9,7 @@
 #include <map>
 
 #include "proc/core/median.h"
+#include "proc/formats/brdf_file.h"
 #include "proc/formats/file_bytes.h"
 #include "proc/formats/zemax.h"
 #include "proc/table/specular_fill.h"
@@ -307,6 +308,21 @@ TEST(Rt300sBrdf, FindsThatThePublishedTisIsNotThePhysicalOne) {
             EXPECT_GT(tis, 0.9 * one.physical[i]);
         }
     }
+}
+
+TEST(Rt300sBrdf, KeepsTheSampleAndTheDateOfAnExport) {
+    const std::string jdv =
+        "DataType:\tBRDF(RT-300S)\t\rSampleID:\tplate\t\rDate:\t7/12/2011\t\r"
+        "Incidence:\t0\t\rPolar:\t0,30,30\t\rAzimuth:\t-90,-80,10\t\rRaw data\t\r"
+        "\t0\t30\r-90\t1\t2\r-80\t1\t3\r";
+    const auto file = decodeBrdf(Format::Rt300s, jdv, "in");
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_EQ(file->about.at(key::kSample), "plate");
+    EXPECT_EQ(file->about.at(key::kDate), "7/12/2011");
+    const auto readings =
+        decodeBrdf(Format::Rt300s, "azimuth_deg,incidence_deg,receive_deg,RT\n0,10,20,1\n", "in");
+    ASSERT_FALSE(readings);
+    EXPECT_EQ(readings.error().kind, ErrorKind::Usage);
 }
 
 }  // namespace

@@ -86,8 +86,12 @@ TEST(ScatteredCsv, IsWhatASampleIsExportedAs) {
     });
     set.leds = {set.leds[1], set.leds[2]};
     set.leds[1].rotation = rotationOf(30);
-    const std::string exported = sampleCsv(set);
-    EXPECT_TRUE(writeScatteredCsv(rowsOf(set), {}).bytes == exported);  // too long to show
+    const std::string exported = writeScatteredCsv(rowsOf(set), {}).bytes;
+    EXPECT_TRUE(exported.starts_with(
+        "theta_i,phi_i,theta_o,phi_o,f_r,f_g,f_b,u_r,u_g,u_b,"
+        "u_random_r,u_random_g,u_random_b,u_systematic_r,u_systematic_g,u_systematic_b,"
+        "flags_r,flags_g,flags_b\n20,0,0.5,60,"))
+        << exported.substr(0, 300);
     const auto back = sampleOf(parsed(exported).content, {});
     ASSERT_TRUE(back);
     ASSERT_EQ(back->set.leds.size(), 2U);
@@ -184,6 +188,33 @@ TEST(ScatteredCsv, SurvivesATextCutAtAnyByte) {
             EXPECT_TRUE(refuses(read, {"csv: cut.csv: line "}));
         }
     }
+}
+
+TEST(ScatteredCsv, NumbersNamesThatWouldNotComeBack) {
+    BrdfRows rows = test::asymmetricRows();
+    const auto names = [&](const std::vector<Channel>& channels, std::size_t changed) {
+        rows.channels = channels;
+        const Written out = writeScatteredCsv(rows, {});
+        const std::vector<LossReport::Item> lost{{Loss::Clamped, "names of channels", changed}};
+        EXPECT_EQ(out.loss.items, changed > 0 ? lost : std::vector<LossReport::Item>{});
+        std::vector<std::string> back;
+        for (const Channel& channel : parsed(out.bytes).content.channels) {
+            back.push_back(channel.name);
+            EXPECT_EQ(channel.nanometres, channels[back.size() - 1].nanometres);
+        }
+        return back;
+    };
+    using Names = std::vector<std::string>;
+    EXPECT_EQ(names({{"a\nb", {}}, {"a b", {}}, {"c ", {}}}, 3),
+              (Names{"a b", "channel 2 a b", "c"}));
+    EXPECT_EQ(names({{"random", {}}, {"systematic", {}}, {"u", {}}}, 2),
+              (Names{"channel 1 random", "channel 2 systematic", "u"}));
+    EXPECT_EQ(names({{"550nm", {}}, {"", 550}, {"r", {}}}, 2),
+              (Names{"channel 1 550nm", "", "channel 3 r"}));
+    EXPECT_EQ(names({{"a@5nm", {}}, {"a", 5}, {"a", 5}}, 2),
+              (Names{"channel 1", "a", "channel 3 a"}));
+    EXPECT_EQ(names({{}, {"channel 1", {}}, {}}, 1),
+              (Names{"channel 1", "channel 2 channel 1", "channel 3"}));
 }
 
 }  // namespace

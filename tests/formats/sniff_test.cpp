@@ -5,10 +5,15 @@
 #include <set>
 #include <utility>
 
+#include "proc/formats/alta.h"
+#include "proc/formats/astm.h"
+#include "proc/formats/bird.h"
 #include "proc/formats/file_bytes.h"
 #include "proc/formats/gonio_exr.h"
 #include "proc/formats/graw_exr.h"
 #include "proc/formats/open.h"
+#include "proc/formats/pab.h"
+#include "proc/formats/scattered_csv.h"
 #include "proc/table/specular_lookup.h"
 #include "tests/formats/refusal.h"
 #include "tests/formats/small_files.h"
@@ -232,6 +237,49 @@ TEST(OpenBrdf, NamesTheFileThatIsDamagedOrHasNoFOfTheBands) {
     EXPECT_TRUE(refuses(openBrdf(folder / "cut.bsdf"), {"zemax: ", "cut.bsdf: line "}));
     ASSERT_TRUE(writeFile(folder / "cut.gonio", encodeGonio(test::smallSample())->substr(0, 3000)));
     EXPECT_TRUE(refuses(openBrdf(folder / "cut.gonio"), {"gonio: ", "cut.gonio: exr: "}));
+}
+
+/// Any of these words once made its file another format's, wherever it stood.
+TEST(Sniff, IsNotMisledByNamesAndComments) {
+    BrdfRows rows;
+    rows.channels = {Channel{}};
+    const Direction up = Direction::fromSpherical({}, {});
+    rows.pairs = {{.in = up, .out = up}};
+    rows.f = {0.5};
+    for (const std::string word : {"RT-300S",
+                                   "#format: theta phi BSDF",
+                                   "Intensity BRDF",
+                                   "Data file type : Intensity BRDF",
+                                   "DataType: BRDF(RT-300S)",
+                                   "azimuth_deg,incidence_deg,receive_deg,RT",
+                                   "theta_i,phi_i,theta_o,phi_o,f",
+                                   "wi_x",
+                                   "<WindowElement xmlns=",
+                                   "VARS theta_i,phi_i",
+                                   "#DIM 3 1",
+                                   "AngleOfIncidence 4",
+                                   "DATA_TYPE brdf"}) {
+        Metadata about;
+        about.set(key::kRig, word);
+        about.set(key::kNotes, "first\n" + word);
+        about.comments = {word};
+        EXPECT_EQ(told(writeScatteredCsv(rows, about).bytes, "a"), Format::Csv) << word;
+        EXPECT_EQ(told(writeAstm(rows, about)->bytes, "a"), Format::Astm) << word;
+        EXPECT_EQ(told(writeAlta(rows, about)->bytes, "a"), Format::Alta) << word;
+        EXPECT_EQ(told(writePab(rows, about)->files.front().bytes, "a"), Format::Pab) << word;
+        EXPECT_EQ(told(writeBird(rows, about).bytes, "a"), Format::Bird) << word;
+        EXPECT_EQ(told("# " + word + "\n" + test::smallZemax(), "a"), Format::Zemax) << word;
+        EXPECT_EQ(told("# " + word + "\n" + kLightTools, "a"), Format::LightTools) << word;
+    }
+}
+
+TEST(Sniff, KnowsTheExportsOfAnRt300sByTheirHeaders) {
+    const std::string stil = "Name / Comment :\ttheta_i\rData file type :\tBRDF\t\r";
+    EXPECT_EQ(told(stil, "a"), Format::LightTools);
+    EXPECT_EQ(told("\xEF\xBB\xBF" + stil, "a"), Format::LightTools);
+    EXPECT_EQ(told("DataType:\tBRDF(RT-300S)\t\rSampleID:\tx\r", "a"), Format::Rt300s);
+    EXPECT_EQ(told("DataType:\tBTDF\rSampleID:\tRT-300S\r", "a"), std::nullopt);
+    EXPECT_EQ(told("# black\r\nreceive_deg,azimuth_deg,incidence_deg,RT\r\n", "a"), Format::Rt300s);
 }
 
 }  // namespace

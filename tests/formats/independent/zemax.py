@@ -25,6 +25,7 @@ class Table:
                 self.header[key] = self.numbers(int(self.take()))
             else:
                 self.header[key] = self.take()
+        self.rotations = self.header.get("samplerotation", [0.0])
         self.incidences = self.header["angleofincidence"]
         self.azimuths = self.header["scatterazimuth"]
         self.radials = self.header["scatterradial"]
@@ -49,7 +50,7 @@ class Table:
         self.expect(name)
         self.expect("databegin")
         rotations = []
-        for _ in self.header.get("samplerotation", [0.0]):
+        for _ in self.rotations:
             blocks = []
             for _ in self.incidences:
                 self.expect("tis")
@@ -68,20 +69,24 @@ class Table:
         azimuth = math.degrees(math.atan2(dot(wo, v), dot(wo, u))) % 360
         if self.header["symmetry"] == "planesymmetrical" and azimuth > 180:
             azimuth = 360 - azimuth
-        return [self.interpolate(plane, theta_i, azimuth, radial) for plane in self.planes]
+        # A sample turned by r under a fixed light has the light at -r; one rotation is of any.
+        turned = -phi_i % 360 if len(self.rotations) > 1 else self.rotations[0]
+        return [self.interpolate(plane, turned, theta_i, azimuth, radial)
+                for plane in self.planes]
 
-    def interpolate(self, plane, theta_i, azimuth, radial):
-        """Linear in all three; nan where a corner that counts is no data."""
+    def interpolate(self, plane, turned, theta_i, azimuth, radial):
+        """Linear in all four; nan where a corner that counts is no data."""
         total = 0.0
-        for i, wi in weights(self.incidences, theta_i):
-            for a, wa in weights(self.azimuths, azimuth):
-                for r, wr in weights(self.radials, radial):
-                    total += wi * wa * wr * self.node(plane, i, a, r)
+        for k, wk in weights(self.rotations, turned):
+            for i, wi in weights(self.incidences, theta_i):
+                for a, wa in weights(self.azimuths, azimuth):
+                    for r, wr in weights(self.radials, radial):
+                        total += wk * wi * wa * wr * self.node(plane[k], i, a, r)
         return total
 
-    def node(self, plane, i, a, r):
+    def node(self, blocks, i, a, r):
         """A node below the horizon, or with exactly 0, holds no data."""
-        value = plane[0][i][a][r]
+        value = blocks[i][a][r]
         mirror, u, v = specular_frame(direction(self.incidences[i], 0), 0)
         azimuth, radial = math.radians(self.azimuths[a]), math.radians(self.radials[r])
         z = math.cos(radial) * mirror[2] + math.sin(radial) * (
