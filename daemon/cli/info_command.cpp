@@ -209,7 +209,7 @@ Result<Info> infoOf(const CommonOptions& common, const InfoOptions& options) {
     info.file["incidences_deg"] = info.values->incidencesDeg;
     info.file["bands"] = proc::channelsOf(*file).size();
     const auto* sample = file->as<proc::SampleSet>();
-    const auto* table = file->as<proc::SpecularTable>();
+    const auto* table = *format == proc::Format::Zemax ? file->as<proc::SpecularTable>() : nullptr;
     if (sample != nullptr) {
         info.file.update(sampleJson(*sample));
         info.budget = proc::readBudget(sample->info.budgetJson);

@@ -126,7 +126,7 @@ TEST(Utia, WritesMissingValuesAsZeroAndSaysSo) {
     const auto written = writeUtia(table);
     ASSERT_TRUE(written);
     ASSERT_EQ(written->loss.items.size(), 1U);
-    EXPECT_EQ(written->loss.items[0].kind, Loss::Masked);
+    EXPECT_EQ(written->loss.items[0].kind, Loss::Clamped);
     EXPECT_EQ(written->loss.items[0].count, 3 * kPlane);
     table.blocks[5].thetaDeg[1] = 16;
     EXPECT_FALSE(writeUtia(table));
