@@ -1,5 +1,6 @@
 #include "proc/export/conversion.h"
 
+#include "proc/core/number_text.h"
 #include "proc/export/conversion_steps.h"
 
 namespace gonio::proc {
@@ -27,11 +28,25 @@ Result<void> checkWish(const ConversionWish& wish) {
     return {};
 }
 
+/// Formats of R, G, B without a place for wavelengths say them among their metadata.
+ConversionSource withWavelengths(ConversionSource source, Format to) {
+    const bool nowhere = to == Format::ExrTiles || to == Format::Rgl || to == Format::Mbsdf;
+    if (!nowhere || source.bands.empty() || !source.about.at("colour").empty()) return source;
+    if (!source.about.at(key::kWavelengths).empty()) return source;
+    std::string text;
+    for (const Band band : source.bands) {
+        text += (text.empty() ? "" : " ") + shortest(nanometres(band));
+    }
+    source.about.set(key::kWavelengths, text);
+    return source;
+}
+
 }  // namespace
 
-Result<std::vector<ConvertedFile>> convertTo(const ConversionSource& source,
+Result<std::vector<ConvertedFile>> convertTo(const ConversionSource& given,
                                              const ConversionWish& wish) {
     if (auto sound = checkWish(wish); !sound) return sound.error();
+    const ConversionSource source = withWavelengths(given, wish.to);
     switch (wish.to) {
         case Format::Gonio: return toGonio(source, wish);
         case Format::Zemax: return toZemax(source, wish);

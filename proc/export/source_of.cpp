@@ -4,8 +4,10 @@
 #include <cmath>
 #include <set>
 
+#include "proc/core/number_text.h"
 #include "proc/formats/file_degrees.h"
 #include "proc/formats/open.h"
+#include "proc/optics/cell_grid.h"
 #include "proc/table/rotations.h"
 
 namespace gonio::proc {
@@ -61,6 +63,14 @@ std::size_t lightAzimuthsOf(const BrdfFile& file, std::size_t rotations) {
     return azimuths.size();
 }
 
+/// A cell of a measured sample holds the mean over its solid angle: all are as good as equal.
+void addSolidAngle(ConversionSource& source) {
+    const bool said = !source.about.at(key::kSolidAngle).empty();
+    if (said || source.file->as<SampleSet>() == nullptr) return;
+    const double mean = 2 * kPi / static_cast<double>(CellGrid::count());
+    source.about.set(key::kSolidAngle, shortest(static_cast<float>(mean)));
+}
+
 }  // namespace
 
 Result<ConversionSource> sourceOf(BrdfFile file, const BandChoice& choice) {
@@ -69,6 +79,7 @@ Result<ConversionSource> sourceOf(BrdfFile file, const BandChoice& choice) {
     ConversionSource source{.about = kept->about};
     source.about.values.erase(std::string(key::kCosine));  // what is written is f
     source.file = std::make_shared<const BrdfFile>(std::move(*kept));
+    addSolidAngle(source);
     // X, Y, Z and wavelengths that are no bands can still be copied.
     if (auto bands = bandsOf(*source.file)) {
         source.bands = std::move(*bands);

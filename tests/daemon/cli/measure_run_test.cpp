@@ -201,11 +201,11 @@ TEST(MeasureRun, SameSeedGivesTheSameBytes) {
         gonio({"measure", "x", "--effort", "draft"});
         const Ran csv = gonio.program({"convert", "sample:x", gonio.program / "x.csv", "-q"});
         EXPECT_EQ(csv.exitCode, 0) << csv.err;
-        return test::textOf(gonio.program / "x.csv");
+        return test::rowsOfCsv(gonio.program / "x.csv");
     };
     const std::string once = measured();
     EXPECT_GT(once.size(), 1'000'000U);
-    EXPECT_EQ(once, measured());
+    EXPECT_TRUE(once == measured());  // megabytes: no one reads their difference
 }
 
 /// Over 20 runs whose systematic errors are stratified, each component of the references takes each

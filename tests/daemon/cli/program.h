@@ -8,6 +8,7 @@
 #include <sys/resource.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <chrono>
 #include <fstream>
 #include <iterator>
@@ -28,6 +29,16 @@ struct Ran {
 inline std::string textOf(const std::filesystem::path& file) {
     std::ifstream in(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// Without the lines of comments that a CSV begins with, which tell when it was measured.
+inline std::string rowsOfCsv(const std::filesystem::path& file) {
+    std::string text = textOf(file);
+    std::size_t begin = 0;
+    while (begin < text.size() && text[begin] == '#') {
+        begin = std::min(text.find('\n', begin), text.size() - 1) + 1;
+    }
+    return text.substr(begin);
 }
 
 inline void writeText(const std::filesystem::path& file, const std::string& text) {
