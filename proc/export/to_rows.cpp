@@ -1,6 +1,7 @@
 // Anything as a list of directions: BiRD, ASTM, pab-opto, ALTA, CSV.
 
 #include <algorithm>
+#include <cmath>
 
 #include "proc/export/conversion_steps.h"
 #include "proc/export/sample_fill.h"
@@ -77,12 +78,40 @@ Converted written(const BrdfRows& rows, Format to, const Metadata& about) {
 
 }  // namespace
 
+namespace {
+
+/// What tables say beside their values, and lists of directions do not.
+void addTableLosses(LossReport& loss, const BrdfFile& file) {
+    std::size_t totals = 0;
+    if (const auto* table = file.as<SpecularTable>()) {
+        for (const TablePlane& plane : table->planes) totals += plane.tis.size();
+    }
+    if (const auto* table = file.as<SphericalTable>()) {
+        for (const SphericalBlock& block : table->blocks) totals += std::isnan(block.tis) ? 0U : 1U;
+    }
+    loss.add(Loss::Dropped, "TIS as stated", totals);
+    std::size_t cells = 0;
+    if (const auto* sample = file.as<SampleSet>()) {
+        for (const LedTable& led : sample->leds) {
+            for (const CellSamples& band : led.bands) {
+                cells += static_cast<std::size_t>(std::count_if(
+                    band.nEff.begin(), band.nEff.end(), [](double n) { return n > 1; }));
+            }
+        }
+    }
+    loss.add(Loss::Dropped, "effective numbers of pixels", cells);
+}
+
+}  // namespace
+
 Converted toRows(const ConversionSource& source, const ConversionWish& wish) {
     Result<Rows> rows = rowsFor(source, wish);
     if (!rows) return rows.error();
     Converted files = written(rows->rows, wish.to, source.about);
-    if (!files || files->empty() || !rows->asked) return files;
+    if (!files || files->empty()) return files;
     LossReport& loss = files->front().loss;
+    if (source.file) addTableLosses(loss, *source.file);
+    if (!rows->asked) return files;
     loss.items.insert(
         loss.items.begin(),
         {Loss::Resampled, "values asked at the cells of each incidence", rows->asked->nodes});
