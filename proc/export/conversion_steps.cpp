@@ -104,11 +104,12 @@ std::shared_ptr<const Scatterer> allBands(const ConversionSource& source) {
 std::vector<Channel> channelsFor(const ConversionSource& source) {
     if (!source.monochrome()) {
         std::vector<Channel> channels;
+        channels.reserve(source.bands.size());
         for (const Band band : source.bands) channels.push_back(Channel::of(band));
         return channels;
     }
     if (source.file) {
-        const std::vector<Channel> own = channelsOf(*source.file);
+        std::vector<Channel> own = channelsOf(*source.file);
         if (own.size() == 1) return own;
     }
     if (source.bands.empty()) return {Channel{}};

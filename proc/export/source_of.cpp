@@ -17,6 +17,7 @@ const std::vector<double> kLedIncidences{0, 20, 40, 60};
 
 std::vector<double> degreesOf(const std::vector<Radians>& angles) {
     std::vector<double> degrees;
+    degrees.reserve(angles.size());
     for (const Radians angle : angles) degrees.push_back(fileDegrees(angle));
     return degrees;
 }

@@ -194,6 +194,7 @@ std::vector<Radians> incidencesOf(const BrdfFile& file) {
     std::sort(degrees.begin(), degrees.end());
     degrees.erase(std::unique(degrees.begin(), degrees.end()), degrees.end());
     std::vector<Radians> incidences;
+    incidences.reserve(degrees.size());
     for (const double value : degrees) incidences.push_back(Radians::fromDegrees(value));
     return incidences;
 }
