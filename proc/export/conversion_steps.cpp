@@ -6,6 +6,7 @@
 #include "proc/export/one_band.h"
 #include "proc/export/resampling.h"
 #include "proc/formats/open.h"
+#include "proc/optics/cell_grid.h"
 #include "proc/table/band_channels.h"
 
 namespace gonio::proc {
@@ -13,7 +14,6 @@ namespace {
 
 /// Probes that are asked at most: a quarter of a second of the slowest estimator.
 constexpr std::size_t kMostProbes = 40'000;
-constexpr std::size_t kCells = 20'626;
 
 struct PlainLosses {
     std::size_t uncertain = 0, flagged = 0, transmitted = 0, otherMatrices = 0;
@@ -60,7 +60,8 @@ void count(PlainLosses& /*lost*/, const Other& /*table*/) {}
 std::vector<Probe> probesOfSource(const ConversionSource& source) {
     if (source.scatterer) {
         const std::size_t lights = source.incidenceDeg.size() * source.rotationDeg.size();
-        const std::size_t stride = std::max<std::size_t>(1, lights * kCells / kMostProbes);
+        const std::size_t stride =
+            std::max<std::size_t>(1, lights * CellGrid::count() / kMostProbes);
         return probesOf(*source.scatterer, source.incidenceDeg, source.rotationDeg, stride);
     }
     std::vector<Probe> probes;
@@ -80,6 +81,15 @@ std::vector<Probe> probesOfSource(const ConversionSource& source) {
 }
 
 }  // namespace
+
+ConvertedFile fileOf(Written written) {
+    return {"", std::move(written.bytes), std::move(written.loss)};
+}
+
+Converted onlyFile(Result<Written> written) {
+    if (!written) return written.error();
+    return std::vector{fileOf(std::move(*written))};
+}
 
 bool mayCopy(const ConversionSource& source, const ConversionWish& wish) {
     if (source.file == nullptr || source.estimated || wish.grid.asks()) return false;
@@ -139,17 +149,7 @@ PlainLosses lossesOf(const ConversionSource& source) {
     return lost;
 }
 
-}  // namespace
-
-void addPlainLosses(LossReport& loss, const ConversionSource& source) {
-    const PlainLosses lost = lossesOf(source);
-    loss.add(Loss::Dropped, "uncertainties", lost.uncertain);
-    loss.add(Loss::Dropped, "flags other than measured", lost.flagged);
-    addSideLosses(loss, source);
-}
-
-void addSideLosses(LossReport& loss, const ConversionSource& source) {
-    const PlainLosses lost = lossesOf(source);
+void addSides(LossReport& loss, const ConversionSource& source, const PlainLosses& lost) {
     loss.add(Loss::Dropped, "values of transmission", lost.transmitted);
     loss.add(Loss::Dropped,
              "values of other faces and spectra than the front's visible one",
@@ -159,6 +159,19 @@ void addSideLosses(LossReport& loss, const ConversionSource& source) {
                  "azimuths of the light",
                  source.lightAzimuths - source.rotationDeg.size());
     }
+}
+
+}  // namespace
+
+void addPlainLosses(LossReport& loss, const ConversionSource& source) {
+    const PlainLosses lost = lossesOf(source);
+    loss.add(Loss::Dropped, "uncertainties", lost.uncertain);
+    loss.add(Loss::Dropped, "flags other than measured", lost.flagged);
+    addSides(loss, source, lost);
+}
+
+void addSideLosses(LossReport& loss, const ConversionSource& source) {
+    addSides(loss, source, lossesOf(source));
 }
 
 void addResampling(ConvertedFile& file,

@@ -12,6 +12,10 @@ namespace gonio::proc {
 
 using Converted = Result<std::vector<ConvertedFile>>;
 
+/// What a writer made, as the only file.
+[[nodiscard]] ConvertedFile fileOf(Written written);
+[[nodiscard]] Converted onlyFile(Result<Written> written);
+
 /// Nothing keeps the source's own table from being written as it is.
 [[nodiscard]] bool mayCopy(const ConversionSource& source, const ConversionWish& wish);
 

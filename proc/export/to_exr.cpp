@@ -22,24 +22,8 @@ Tiles askedTiles(const ConversionSource& source, const ConversionWish& wish) {
     const Size tile{static_cast<int>(std::lround(360 / step)),
                     static_cast<int>(std::lround(180 / step))};
     const SpecularGrid grid = exrTileGrid(incidencesFor(source, wish), tile);
-    Tiles tiles;
-    const auto add = [&](FilledTable filled) {
-        tiles.asked.nodes += filled.nodes;
-        tiles.asked.unanswered += filled.unanswered;
-        tiles.asked.extrapolated += filled.extrapolated;
-        if (tiles.table.planes.empty()) {
-            tiles.table = std::move(filled.table);
-        } else {
-            tiles.table.planes.push_back(std::move(filled.table.planes.front()));
-        }
-    };
-    if (source.monochrome()) {
-        add(fillTable(*allBands(source), grid, Band::R));
-        return tiles;
-    }
-    for (const Band band : kBands) add(fillTable(*source.scatterer, grid, band));
-    tiles.table.colour = TableColour::LedBands;
-    return tiles;
+    FilledTable filled = fillBands(*allBands(source), grid);
+    return {std::move(filled.table), {filled.nodes, filled.unanswered, filled.extrapolated}};
 }
 
 const SpecularTable* ownTiles(const ConversionSource& source, const ConversionWish& wish) {
@@ -63,7 +47,7 @@ Converted toExrTiles(const ConversionSource& source, const ConversionWish& wish)
     Result<Written> written =
         encodeExrTiles(own != nullptr ? *own : tiles.table, source.about, {.half = wish.half});
     if (!written) return written.error();
-    ConvertedFile file{"", std::move(written->bytes), std::move(written->loss)};
+    ConvertedFile file = fileOf(std::move(*written));
     if (own == nullptr) {
         addPlainLosses(file.loss, source);
         addResampling(file, source, tiles.asked, Format::ExrTiles);

@@ -10,13 +10,13 @@ Converted toMerl(const ConversionSource& source, const ConversionWish& wish) {
     const auto* table = mayCopy(source, wish) ? source.file->as<HalfDifferenceTable>() : nullptr;
     if (table != nullptr) {
         Written file = writeMerl(*table, source.about);
-        return std::vector{ConvertedFile{"", std::move(file.bytes), std::move(file.loss)}};
+        return std::vector{fileOf(std::move(file))};
     }
     if (auto answers = mustAnswer(source, Format::Merl); !answers) return answers.error();
     if (auto three = mustHaveThree(source, Format::Merl); !three) return three.error();
     const FilledHalfDifference filled = fillHalfDifference(*allBands(source));
     Written written = writeMerl(filled.table, source.about);
-    ConvertedFile file{"", std::move(written.bytes), std::move(written.loss)};
+    ConvertedFile file = fileOf(std::move(written));
     addPlainLosses(file.loss, source);
     file.loss.add(
         Loss::Dropped, "rotations of the sample but the first", source.rotationDeg.size() - 1);

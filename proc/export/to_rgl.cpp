@@ -36,7 +36,7 @@ Converted toRgl(const ConversionSource& source, const ConversionWish& wish) {
         table != nullptr ? FittedTensor{} : fitTensor(*allBands(source), optionsFor(source, wish));
     Result<Written> written = writeRgl(table != nullptr ? *table : fitted.table, source.about);
     if (!written) return written.error();
-    ConvertedFile file{"", std::move(written->bytes), std::move(written->loss)};
+    ConvertedFile file = fileOf(std::move(*written));
     if (table != nullptr) return std::vector{std::move(file)};
     addPlainLosses(file.loss, source);
     file.loss.add(

@@ -50,11 +50,6 @@ Result<Rows> rowsFor(const ConversionSource& source, const ConversionWish& wish)
     return answered(source, wish);
 }
 
-Converted one(Result<Written> file) {
-    if (!file) return file.error();
-    return std::vector{ConvertedFile{"", std::move(file->bytes), std::move(file->loss)}};
-}
-
 /// A file for each light.
 Converted toPab(const BrdfRows& rows, const Metadata& about) {
     Result<WrittenPab> written = writePab(rows, about);
@@ -68,17 +63,13 @@ Converted toPab(const BrdfRows& rows, const Metadata& about) {
 
 Converted written(const BrdfRows& rows, Format to, const Metadata& about) {
     switch (to) {
-        case Format::Bird: return one(writeBird(rows, about));
-        case Format::Astm: return one(writeAstm(rows, about));
+        case Format::Bird: return onlyFile(writeBird(rows, about));
+        case Format::Astm: return onlyFile(writeAstm(rows, about));
         case Format::Pab: return toPab(rows, about);
-        case Format::Alta: return one(writeAlta(rows, about));
-        default: return one(writeScatteredCsv(rows, about));
+        case Format::Alta: return onlyFile(writeAlta(rows, about));
+        default: return onlyFile(writeScatteredCsv(rows, about));
     }
 }
-
-}  // namespace
-
-namespace {
 
 /// What tables say beside their values, and lists of directions do not.
 void addTableLosses(LossReport& loss, const BrdfFile& file) {

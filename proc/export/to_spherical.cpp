@@ -79,17 +79,12 @@ Result<Written> written(const SphericalTable& table, const ConversionWish& wish,
     }
 }
 
-Converted one(Result<Written> file) {
-    if (!file) return file.error();
-    return std::vector{ConvertedFile{"", std::move(file->bytes), std::move(file->loss)}};
-}
-
 }  // namespace
 
 Converted toSpherical(const ConversionSource& source, const ConversionWish& wish) {
     const auto* table = mayCopy(source, wish) ? source.file->as<SphericalTable>() : nullptr;
     const bool own = !hasOwnGrid(wish.to) || (source.file && source.file->format == wish.to);
-    if (table != nullptr && own) return one(written(*table, wish, source.about));
+    if (table != nullptr && own) return onlyFile(written(*table, wish, source.about));
     if (auto answers = mustAnswer(source, wish.to); !answers) return answers.error();
     if (hasOwnGrid(wish.to)) {
         if (auto three = mustHaveThree(source, wish.to); !three) return three.error();
@@ -98,7 +93,7 @@ Converted toSpherical(const ConversionSource& source, const ConversionWish& wish
     if (!grid) return grid.error();
     FilledSpherical filled = fillSpherical(*allBands(source), std::move(*grid));
     if (!hasOwnGrid(wish.to)) addTotals(filled.table, source);
-    Converted files = one(written(filled.table, wish, source.about));
+    Converted files = onlyFile(written(filled.table, wish, source.about));
     if (!files) return files;
     addPlainLosses(files->front().loss, source);
     const bool one = wish.to == Format::Mbsdf;

@@ -16,7 +16,7 @@ ConvertedFile written(SpecularTable table, const ConversionSource& source, const
     }
     table.comments = metadataLines(about);
     Written file = writeZemax(table);
-    return {"", std::move(file.bytes), std::move(file.loss)};
+    return fileOf(std::move(file));
 }
 
 /// The surface's own symmetry and rotations, in steps of one degree or as the grid says.
