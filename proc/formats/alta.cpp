@@ -11,6 +11,7 @@
 #include "proc/core/number_text.h"
 #include "proc/core/quantities.h"
 #include "proc/formats/file_degrees.h"
+#include "proc/formats/foreign_keywords.h"
 #include "proc/formats/row_notes.h"
 #include "proc/formats/shown.h"
 #include "proc/formats/text_lines.h"
@@ -20,6 +21,9 @@ namespace gonio::proc {
 namespace {
 
 constexpr std::string_view kForeign = "alta.";
+/// What the reader itself understands.
+constexpr std::array<std::string_view, 5> kOwnKeywords{
+    "dim", "vs", "param_in", "param_out", "sample"};
 using Numbers = std::span<const double>;
 
 Direction at(double theta, double phi) {
@@ -357,10 +361,8 @@ private:
         if (!about_.at(key::kSample).empty()) {
             line("SAMPLE", "\"" + std::string(about_.at(key::kSample)) + "\"");
         }
-        for (const auto& [name, value] : about_.values) {
-            if (!name.starts_with(kForeign)) continue;
-            line(std::string_view(name).substr(kForeign.size()), "\"" + value + "\"");
-            rest.values.erase(name);
+        for (const auto& [keyword, value] : takeForeignKeywords(rest, kForeign, kOwnKeywords)) {
+            line(keyword, "\"" + value + "\"");
         }
         for (const std::string& comment : metadataLines(rest)) {
             text_ += "# " + onOneLine(comment) + "\n";

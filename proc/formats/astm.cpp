@@ -9,6 +9,7 @@
 #include "proc/core/number_text.h"
 #include "proc/formats/channel_texts.h"
 #include "proc/formats/file_degrees.h"
+#include "proc/formats/foreign_keywords.h"
 #include "proc/formats/row_notes.h"
 #include "proc/formats/shown.h"
 #include "proc/formats/text_lines.h"
@@ -26,6 +27,10 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kKeys{{
     {"SYSTEM_NAME", key::kRig},
     {"MEAS_DATE", key::kDate},
 }};
+
+/// What the reader itself understands.
+constexpr std::array<std::string_view, 7> kOwnKeywords{
+    "vars", "comment", "num_points", "sample_name", "system_name", "meas_date", "meas_name"};
 
 std::string_view withoutQuotes(std::string_view value) {
     if (value.size() >= 2 && value.front() == '"' && value.back() == '"') {
@@ -218,10 +223,8 @@ std::string headerText(const BrdfRows& rows, const Metadata& about) {
                                    rows.channels.end(),
                                    [](const Channel& c) { return !c.name.empty(); });
     Metadata rest = withRowNotes(about, rows, named);
-    for (const auto& [name, value] : about.values) {
-        if (!name.starts_with(kForeign)) continue;
-        put(std::string_view(name).substr(kForeign.size()), "\"" + value + "\"");
-        rest.values.erase(name);
+    for (const auto& [keyword, value] : takeForeignKeywords(rest, kForeign, kOwnKeywords)) {
+        put(keyword, "\"" + value + "\"");
     }
     for (const std::string& line : metadataLines(rest)) put("COMMENT", line);
     return text;

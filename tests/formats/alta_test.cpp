@@ -67,6 +67,17 @@ TEST(Alta, TakesKeywordsInAnyCase) {
     EXPECT_EQ(written(parsed(written(read))), written(read));
 }
 
+TEST(Alta, WritesForeignKeywordsThatItWouldReadBack) {
+    FileRead<BrdfRows> read = parsed(smallAlta());
+    for (const char* name : {"alta.Url", "alta.dim", "alta.", "alta.SAMPLE"}) {
+        read.about.set(name, "x");
+    }
+    const std::string once = written(read);
+    read.about.values.erase(std::string(key::kCosine));  // said of the first file alone
+    EXPECT_EQ(parsed(once).about, read.about);
+    EXPECT_EQ(written(parsed(once)), once);
+}
+
 TEST(Alta, ReadsTheRealTape) {
     const auto path = test::dataFile("retroreflective/retro-3M-jaune.dat");
     if (!path) return;

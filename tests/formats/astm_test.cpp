@@ -183,6 +183,17 @@ TEST(Astm, RefusesATextCutAtAnyByte) {
     }
 }
 
+// Found by libFuzzer: a keyword beside the same one in another case among the comments.
+TEST(Astm, WritesNoKeywordTwice) {
+    const std::string text =
+        replaced(smallAstm(), "NUM_POINTS", "COMMENT gonio.astm.lab_Name: x\nNUM_POINTS");
+    const std::string once = written(parsed(text));
+    const FileRead<BrdfRows> back = parsed(once);
+    EXPECT_EQ(back.about.at("astm.LAB_NAME"), "A LABORATORY");
+    EXPECT_EQ(back.about.at("astm.lab_Name"), "x");
+    EXPECT_EQ(written(back), once);
+}
+
 TEST(Astm, IsNotWrittenWithoutARow) {
     BrdfRows rows = test::asymmetricRows();
     for (std::size_t pair = 0; pair < rows.pairs.size(); ++pair) {
