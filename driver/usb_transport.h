@@ -31,6 +31,8 @@ struct UsbRig {
     std::string place;     ///< bus and ports: "1-2.4"
     std::string protocol;  ///< "GRP/1.0"; empty where it cannot be read
     std::string obstacle;  ///< why it cannot be opened, and the cure; empty: it can
+    int speed = 0;         ///< of the port as it is connected, Mbit/s; 0: unknown
+    bool superSpeed = false;  ///< it could do 5000 Mbit/s at least
 };
 
 [[nodiscard]] Result<std::vector<UsbRig>> listUsb(const UsbSelection& wanted = {});
