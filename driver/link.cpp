@@ -332,7 +332,7 @@ Result<void> RigLink::keepAlive() {
     return {};
 }
 
-Result<std::optional<std::vector<std::uint8_t>>> RigLink::readBulk(Nanoseconds wait) {
+Result<std::optional<BulkBytes>> RigLink::readBulk(Nanoseconds wait) {
     const Nanoseconds deadline = clock().now() + wait;
     while (true) {
         if (auto alive = keepAlive(); !alive) return alive.error();

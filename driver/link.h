@@ -55,7 +55,8 @@ public:
     /// Takes what has come, and sends a PING when one is due.
     Result<void> keepAlive();
     /// The next bulk transfer, or nothing when `wait` has passed; the heartbeat is fed meanwhile.
-    Result<std::optional<std::vector<std::uint8_t>>> readBulk(Nanoseconds wait);
+    /// Its bytes are borrowed until the next call of readBulk.
+    Result<std::optional<BulkBytes>> readBulk(Nanoseconds wait);
 
     /// The next STATUS (10 Hz and on change); a Device error when none comes.
     Result<Status> freshStatus();

@@ -1,8 +1,8 @@
 #pragma once
 // The bulk stream of an opened rig: a ring of transfers in flight and the thread that serves it.
 // The ring holds at most 2 MiB; when the system refuses memory it is halved, down to two transfers.
-// Nothing is allocated after start() but the chunks that read() hands out. A transfer that nobody
-// has read is not in flight: a slow reader holds the rig back and loses nothing.
+// Nothing is allocated after start(). A transfer that nobody has read, or that the reader still
+// looks at, is not in flight: a slow reader holds the rig back and loses nothing.
 // STALL: all transfers are drained, the halt is cleared, and the stream goes on; OVERFLOW: that
 // chunk is dropped; ERROR: one control request decides whether the rig is still there. A third
 // stall or error in ten seconds is a failure, and a failure is final.
@@ -38,7 +38,8 @@ public:
 
     /// Fills the ring with transfers that each hold a chunk of `maxChunkPayload` bytes.
     Result<void> start(std::size_t maxChunkPayload);
-    [[nodiscard]] Result<std::optional<std::vector<std::uint8_t>>> read(Nanoseconds wait);
+    /// Borrowed until the next call of read() or reset().
+    [[nodiscard]] Result<std::optional<BulkBytes>> read(Nanoseconds wait);
     /// SET_INTERFACE(stream, 0): drops what has come.
     Result<void> reset();
     /// Asks the thread to end, and waits for it until `deadline`; a thread that is stuck in the
@@ -56,7 +57,8 @@ private:
     enum class Place {
         Idle,
         InFlight,
-        Ready
+        Ready,
+        Lent
     };
     struct Slot {
         libusb_transfer* transfer = nullptr;
@@ -73,6 +75,7 @@ private:
     bool tooOften();
     // With the mutex held:
     void submitIdle();
+    void takeBackLent();
     void shrink();
     [[nodiscard]] std::string memoryHint() const;
     void fail(Error error);
@@ -85,7 +88,8 @@ private:
     mutable std::mutex mutex_;
     std::condition_variable changed_;
     std::vector<Slot> slots_;
-    std::vector<std::size_t> ready_;  ///< slots with a chunk, oldest first
+    std::vector<std::size_t> ready_;   ///< slots with a chunk, oldest first
+    std::optional<std::size_t> lent_;  ///< the slot whose bytes the reader has
     StreamCounters counters_;
     int inFlight_ = 0;
     bool holding_ = true;  ///< nothing is submitted: before start, while draining, after the end

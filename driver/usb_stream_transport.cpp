@@ -80,26 +80,26 @@ Result<void> UsbStream::start(std::size_t maxChunkPayload) {
 
 // ---- what the caller's thread does
 
-Result<std::optional<std::vector<std::uint8_t>>> UsbStream::read(Nanoseconds wait) {
+Result<std::optional<BulkBytes>> UsbStream::read(Nanoseconds wait) {
     std::unique_lock lock(mutex_);
+    takeBackLent();
     changed_.wait_until(lock, steadyNow() + wait, [&] { return !ready_.empty() || failure_; });
     if (ready_.empty()) {
         if (failure_) return *failure_;
         submitIdle();  // what the system had no memory for before
-        return std::optional<std::vector<std::uint8_t>>{};
+        return std::optional<BulkBytes>{};
     }
-    Slot& slot = slots_[ready_.front()];
-    const auto length = static_cast<std::size_t>(slot.transfer->actual_length);
-    std::vector<std::uint8_t> chunk(slot.buffer.begin(),
-                                    slot.buffer.begin() + static_cast<std::ptrdiff_t>(length));
+    lent_ = ready_.front();
     ready_.erase(ready_.begin());
-    slot.place = Place::Idle;
-    submitIdle();
-    return std::optional(std::move(chunk));
+    Slot& slot = slots_[*lent_];
+    slot.place = Place::Lent;
+    const auto length = static_cast<std::size_t>(slot.transfer->actual_length);
+    return std::optional(BulkBytes(slot.buffer).first(length));
 }
 
 Result<void> UsbStream::reset() {
     std::unique_lock lock(mutex_);
+    takeBackLent();
     if (failure_) return *failure_;
     resetWanted_ = true;
     resetDone_.reset();
@@ -278,6 +278,13 @@ bool UsbStream::tooOften() {
 // ---- with the mutex held
 
 int UsbStream::busy() const { return inFlight_ + static_cast<int>(ready_.size()); }
+
+void UsbStream::takeBackLent() {
+    if (!lent_) return;
+    slots_[*lent_].place = Place::Idle;
+    lent_.reset();
+    submitIdle();
+}
 
 void UsbStream::submitIdle() {
     for (Slot& slot : slots_) {

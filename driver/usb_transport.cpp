@@ -55,8 +55,7 @@ public:
         }
         return report;
     }
-    [[nodiscard]] Result<std::optional<std::vector<std::uint8_t>>> readBulk(
-        Nanoseconds wait) override {
+    [[nodiscard]] Result<std::optional<BulkBytes>> readBulk(Nanoseconds wait) override {
         auto chunk = stream_->read(wait);
         if (chunk && !*chunk) {
             if (auto lost = hid_->failure()) return *lost;
@@ -64,6 +63,12 @@ public:
         return chunk;
     }
     Result<void> resetStream() override { return stream_->reset(); }
+    Result<void> reopenReports() override {
+        return Error{ErrorKind::Device, "rig " + strings().serial + ": its reports are silent"};
+    }
+    Result<void> resetPort() override {
+        return Error{ErrorKind::Device, "rig " + strings().serial + " does not answer"};
+    }
 
 private:
     SteadyClock clock_;

@@ -1,6 +1,7 @@
 #include "sim/in_process.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace gonio::sim {
 namespace {
@@ -52,18 +53,31 @@ Result<std::optional<driver::Report>> InProcessDoor::readInput(Nanoseconds wait)
     return waitFor(device_, wait, [this] { return device_.takeInput(); });
 }
 
-Result<std::optional<std::vector<std::uint8_t>>> InProcessDoor::readBulk(Nanoseconds wait) {
+Result<std::optional<driver::BulkBytes>> InProcessDoor::readBulk(Nanoseconds wait) {
     auto chunk = waitFor(device_, wait, [this] { return device_.takeBulk(); });
-    if (chunk) {
-        const double cost = device_.link().nanosecondsPerByte * static_cast<double>(chunk->size());
-        spend(Nanoseconds(static_cast<std::int64_t>(cost)));
-    }
-    return chunk;
+    if (!chunk) return std::optional<driver::BulkBytes>{};
+    lent_ = std::move(*chunk);
+    const double cost = device_.link().nanosecondsPerByte * static_cast<double>(lent_.size());
+    spend(Nanoseconds(static_cast<std::int64_t>(cost)));
+    return std::optional<driver::BulkBytes>(lent_);
 }
 
 Result<void> InProcessDoor::resetStream() {
     spend(kControlTime);
     device_.resetStream();
+    return {};
+}
+
+Result<void> InProcessDoor::reopenReports() {
+    spend(kControlTime);
+    while (device_.takeInput()) {
+    }
+    return {};
+}
+
+Result<void> InProcessDoor::resetPort() {
+    spend(kControlTime);
+    device_.linkLost();
     return {};
 }
 

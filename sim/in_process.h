@@ -19,9 +19,10 @@ public:
     Result<void> setFeature(const driver::Report& report) override;
     [[nodiscard]] Result<driver::Report> getFeature(std::uint8_t id) override;
     [[nodiscard]] Result<std::optional<driver::Report>> readInput(Nanoseconds wait) override;
-    [[nodiscard]] Result<std::optional<std::vector<std::uint8_t>>> readBulk(
-        Nanoseconds wait) override;
+    [[nodiscard]] Result<std::optional<driver::BulkBytes>> readBulk(Nanoseconds wait) override;
     Result<void> resetStream() override;
+    Result<void> reopenReports() override;
+    Result<void> resetPort() override;
 
     [[nodiscard]] Device& device() { return device_; }
 
@@ -30,6 +31,7 @@ private:
     void spend(Nanoseconds time) { device_.advanceTo(device_.now() + time); }
 
     Device device_;
+    std::vector<std::uint8_t> lent_;  ///< the chunk that the caller has
 };
 
 }  // namespace gonio::sim

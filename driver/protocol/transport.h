@@ -9,7 +9,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "proc/core/result.h"
 #include "proc/core/stopwatch.h"
@@ -29,6 +28,10 @@ struct DeviceStrings {
     std::string protocol;  ///< string descriptor 240, e.g. "GRP/1.0"
 };
 
+/// Of one bulk transfer: one chunk, or whatever came. Borrowed until the next call of readBulk or
+/// resetStream, and no longer than the transport lives.
+using BulkBytes = std::span<const std::uint8_t>;
+
 class Transport {
 public:
     virtual ~Transport() = default;
@@ -44,11 +47,14 @@ public:
 
     /// The next HID input report, or nothing when `wait` has passed.
     [[nodiscard]] virtual Result<std::optional<Report>> readInput(Nanoseconds wait) = 0;
-    /// The next bulk transfer (one chunk, or whatever came), or nothing when `wait` has passed.
-    [[nodiscard]] virtual Result<std::optional<std::vector<std::uint8_t>>> readBulk(
-        Nanoseconds wait) = 0;
+    /// The next bulk transfer, or nothing when `wait` has passed.
+    [[nodiscard]] virtual Result<std::optional<BulkBytes>> readBulk(Nanoseconds wait) = 0;
     /// SET_INTERFACE(1, 0): flush the stream; it also clears a halt.
     virtual Result<void> resetStream() = 0;
+    /// Closes the report side and opens it anew: for reports that have fallen silent.
+    virtual Result<void> reopenReports() = 0;
+    /// Resets the rig's port. The rig loses its link by it: dark, flushed, the session lapsed.
+    virtual Result<void> resetPort() = 0;
 };
 
 }  // namespace gonio::driver

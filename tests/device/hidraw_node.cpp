@@ -33,7 +33,7 @@ void discardUnread(int terminal) {
 
 }  // namespace
 
-HidrawNode::HidrawNode(LiveRig& live, UMockdevTestbed* testbed, std::string path)
+HidrawNode::HidrawNode(sim::LiveRig& live, UMockdevTestbed* testbed, std::string path)
     : MockNode(testbed, std::move(path)), live_(live) {
     g_signal_connect(handler(), "handle-ioctl", G_CALLBACK(onIoctl), this);
     g_signal_connect(handler(), "handle-write", G_CALLBACK(onWrite), this);

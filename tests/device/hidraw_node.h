@@ -5,14 +5,14 @@
 
 #include <string>
 
-#include "tests/device/live_rig.h"
+#include "sim/live_rig.h"
 #include "tests/device/mock_node.h"
 
 namespace gonio::device_test {
 
 class HidrawNode : public MockNode {
 public:
-    HidrawNode(LiveRig& live, UMockdevTestbed* testbed, std::string path);
+    HidrawNode(sim::LiveRig& live, UMockdevTestbed* testbed, std::string path);
     ~HidrawNode() override;
     /// Call once the test bed has the node.
     void connect();
@@ -27,7 +27,7 @@ private:
     int feature(bool get, std::span<std::uint8_t> report);
     void waitWhileHung() const;
 
-    LiveRig& live_;
+    sim::LiveRig& live_;
     int terminal_ = -1;
 };
 

@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "tests/device/live_rig.h"
+#include "sim/live_rig.h"
 
 typedef struct _UMockdevTestbed UMockdevTestbed;
 
@@ -41,8 +41,8 @@ public:
     void plug();
     /// The cable is pulled: transfers in flight end in errors, then the nodes vanish.
     void unplug();
-    [[nodiscard]] LiveRig& live() { return live_; }
-    [[nodiscard]] Faults& faults() { return live_.faults; }
+    [[nodiscard]] sim::LiveRig& live() { return live_; }
+    [[nodiscard]] sim::Faults& faults() { return live_.faults; }
     [[nodiscard]] std::string usbNode() const;
     [[nodiscard]] std::string hidNode() const;
 
@@ -51,7 +51,7 @@ private:
     [[nodiscard]] std::string hidName() const;
 
     MockBus& bus_;
-    LiveRig live_;
+    sim::LiveRig live_;
     std::string serial_;
     int port_;
     int number_ = 0;  ///< of its nodes: another one each time it is plugged in

@@ -44,7 +44,7 @@ bool takeOne(std::atomic<int>& counter) {
 
 }  // namespace
 
-UsbfsNode::UsbfsNode(LiveRig& live, UMockdevTestbed* testbed, std::string path)
+UsbfsNode::UsbfsNode(sim::LiveRig& live, UMockdevTestbed* testbed, std::string path)
     : MockNode(testbed, std::move(path)), live_(live) {
     g_signal_connect(handler(), "handle-ioctl", G_CALLBACK(onIoctl), this);
 }

@@ -8,7 +8,7 @@
 #include <mutex>
 #include <string>
 
-#include "tests/device/live_rig.h"
+#include "sim/live_rig.h"
 #include "tests/device/mock_node.h"
 
 struct usbdevfs_urb;
@@ -17,7 +17,7 @@ namespace gonio::device_test {
 
 class UsbfsNode : public MockNode {
 public:
-    UsbfsNode(LiveRig& live, UMockdevTestbed* testbed, std::string path);
+    UsbfsNode(sim::LiveRig& live, UMockdevTestbed* testbed, std::string path);
     ~UsbfsNode() override;
     void pull() override;
 
@@ -40,7 +40,7 @@ private:
     static void forget(std::deque<Urb>& urbs);
     void forgetTheDead();
 
-    LiveRig& live_;
+    sim::LiveRig& live_;
     std::mutex mutex_;
     std::deque<Urb> waiting_, done_;
 };

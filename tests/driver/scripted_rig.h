@@ -159,17 +159,25 @@ public:
         return std::optional(report);
     }
 
-    [[nodiscard]] Result<std::optional<Bytes>> readBulk(Nanoseconds wait) override {
+    [[nodiscard]] Result<std::optional<BulkBytes>> readBulk(Nanoseconds wait) override {
         if (stream.empty()) {
             now_ += wait;
-            return std::optional<Bytes>{};
+            return std::optional<BulkBytes>{};
         }
-        Bytes transfer = std::move(stream.front());
+        lent_ = std::move(stream.front());
         stream.pop_front();
-        return std::optional(std::move(transfer));
+        return std::optional<BulkBytes>(lent_);
     }
 
     Result<void> resetStream() override {
+        stream.clear();
+        return {};
+    }
+    Result<void> reopenReports() override {
+        inputs_.clear();
+        return {};
+    }
+    Result<void> resetPort() override {
         stream.clear();
         return {};
     }
@@ -322,6 +330,7 @@ private:
     }
 
     Nanoseconds now_{0}, nextStatus_{0}, lastCommandAt_{0};
+    Bytes lent_;  ///< the transfer that the caller has
     std::multimap<Nanoseconds, Report> inputs_;
     std::optional<Ack> lastAck_;
     std::deque<Event> events_;

@@ -312,13 +312,14 @@ public:
     [[nodiscard]] Result<std::optional<driver::Report>> readInput(Nanoseconds wait) override {
         return door.readInput(wait);
     }
-    [[nodiscard]] Result<std::optional<std::vector<std::uint8_t>>> readBulk(
-        Nanoseconds wait) override {
+    [[nodiscard]] Result<std::optional<driver::BulkBytes>> readBulk(Nanoseconds wait) override {
         auto chunk = door.readBulk(wait);
-        if (chunk && *chunk && lost_(random_)) return std::optional<std::vector<std::uint8_t>>{};
+        if (chunk && *chunk && lost_(random_)) return std::optional<driver::BulkBytes>{};
         return chunk;
     }
     Result<void> resetStream() override { return door.resetStream(); }
+    Result<void> reopenReports() override { return door.reopenReports(); }
+    Result<void> resetPort() override { return door.resetPort(); }
 
     sim::InProcessDoor door;
 

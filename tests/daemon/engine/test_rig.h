@@ -44,14 +44,21 @@ public:
         if (report && *report) look(**report);
         return report;
     }
-    [[nodiscard]] Result<std::optional<std::vector<std::uint8_t>>> readBulk(
-        Nanoseconds wait) override {
+    [[nodiscard]] Result<std::optional<driver::BulkBytes>> readBulk(Nanoseconds wait) override {
         if (Result<void> there = pass(); !there) return there.error();
         return door_.readBulk(wait);
     }
     Result<void> resetStream() override {
         if (Result<void> there = pass(); !there) return there;
         return door_.resetStream();
+    }
+    Result<void> reopenReports() override {
+        if (Result<void> there = pass(); !there) return there;
+        return door_.reopenReports();
+    }
+    Result<void> resetPort() override {
+        if (Result<void> there = pass(); !there) return there;
+        return door_.resetPort();
     }
 
     // For any thread.

@@ -1,8 +1,8 @@
-#include "tests/device/live_rig.h"
+#include "sim/live_rig.h"
 
 #include "driver/protocol/reports.h"
 
-namespace gonio::device_test {
+namespace gonio::sim {
 namespace {
 
 using namespace std::chrono_literals;
@@ -12,7 +12,7 @@ Nanoseconds realNow() { return std::chrono::steady_clock::now().time_since_epoch
 
 }  // namespace
 
-LiveRig::LiveRig(sim::DeviceConfig config) : usb_(std::move(config)), boot_(realNow()) {
+LiveRig::LiveRig(DeviceConfig config) : usb_(std::move(config)), boot_(realNow()) {
     pump_ = std::jthread([this](const std::stop_token& stop) {
         while (!stop.stop_requested()) {
             flushReports();
@@ -41,15 +41,15 @@ void LiveRig::flushReports() {
 
 void LiveRig::handOn() {
     while (true) {
-        const sim::UsbReply reply = usb_.interruptIn();
-        if (reply.answer != sim::UsbAnswer::Done) return;
+        const UsbReply reply = usb_.interruptIn();
+        if (reply.answer != UsbAnswer::Done) return;
         if (sink_ && !faults.hung) sink_(reply.data);
     }
 }
 
 void LiveRig::warmUp(const Window& window) {
     const std::scoped_lock lock(mutex_);
-    sim::Device& device = usb_.device();
+    Device& device = usb_.device();
     constexpr std::uint64_t kSession = 0xFFFFFFFF;
     const SessionSet claim{.sessionId = kSession, .heartbeatMs = 10000, .hostMinor = 0};
     device.setFeature(encode(claim));
@@ -68,7 +68,7 @@ void LiveRig::warmUp(const Window& window) {
                           .width = u16(window.size.width),
                           .height = u16(window.size.height),
                           .binning = static_cast<std::uint8_t>(window.binning)}));
-    for (std::uint8_t led = 0; led < sim::kLeds; ++led) {
+    for (std::uint8_t led = 0; led < kLeds; ++led) {
         send(Op::SetLed, encode(SetLed{.led = led, .levels = {1, 0, 0}}));
         send(Op::Arm, encode(Arm{.captureId = led + 1ULL, .frames = 1, .trigger = 0}));
         device.advanceTo(device.now() + 1s);
@@ -77,8 +77,8 @@ void LiveRig::warmUp(const Window& window) {
     release.release = true;
     device.setFeature(encode(release));
     skipped_ = device.now() - (realNow() - boot_);
-    while (usb_.interruptIn().answer == sim::UsbAnswer::Done) {
+    while (usb_.interruptIn().answer == UsbAnswer::Done) {
     }
 }
 
-}  // namespace gonio::device_test
+}  // namespace gonio::sim

@@ -14,7 +14,7 @@
 #include "proc/core/frame.h"
 #include "sim/usb_device.h"
 
-namespace gonio::device_test {
+namespace gonio::sim {
 
 /// Read by the doors; counters go down to zero as they are used up.
 struct Faults {
@@ -30,7 +30,7 @@ class LiveRig {
 public:
     using Sink = std::function<void(const std::vector<std::uint8_t>& report)>;
 
-    explicit LiveRig(sim::DeviceConfig config);
+    explicit LiveRig(DeviceConfig config);
     ~LiveRig();
     LiveRig(const LiveRig&) = delete;
     LiveRig& operator=(const LiveRig&) = delete;
@@ -41,7 +41,7 @@ public:
     auto with(Use use) {
         const std::scoped_lock lock(mutex_);
         advance();
-        if constexpr (std::is_void_v<std::invoke_result_t<Use&, sim::UsbDevice&>>) {
+        if constexpr (std::is_void_v<std::invoke_result_t<Use&, UsbDevice&>>) {
             use(usb_);
             handOn();
         } else {
@@ -63,7 +63,7 @@ private:
     void advance();
     void handOn();
 
-    sim::UsbDevice usb_;
+    UsbDevice usb_;
     std::mutex mutex_;
     Sink sink_;
     Nanoseconds boot_;
@@ -71,4 +71,4 @@ private:
     std::jthread pump_;
 };
 
-}  // namespace gonio::device_test
+}  // namespace gonio::sim
