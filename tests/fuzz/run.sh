@@ -16,7 +16,10 @@ each=$((seconds * cores / ${#programs[@]}))
 # A reader may take 1 s and 50 MiB: one allocation is held against that here, all of them by
 # tests/formats/hostile_test.cpp, which counts them. The rest is the sanitizer's own.
 export ASAN_OPTIONS=quarantine_size_mb=16:allocator_may_return_null=0 UBSAN_OPTIONS=print_stacktrace=1
-export tree each words limits="-timeout=1 -rss_limit_mb=768 -malloc_limit_mb=50"
+# The same inputs each time in `check`; others each night.
+seed=1
+[ -z "${GONIO_NIGHTLY:-}" ] || seed=0
+export tree each words seed limits="-timeout=1 -rss_limit_mb=768 -malloc_limit_mb=50"
 
 # fuzz PROGRAM: one reader. What took too long on a busy machine must do so again, alone.
 fuzz() {
@@ -27,7 +30,7 @@ fuzz() {
     mkdir -p "$corpus" "$crashes"
     [ ! -f "$words/$reader.dict" ] || dictionary=("-dict=$words/$reader.dict")
     # shellcheck disable=SC2086  # several limits
-    "$program" $limits -max_len=1048576 "-max_total_time=$each" "-artifact_prefix=$crashes/" \
+    "$program" $limits -max_len=1048576 "-max_total_time=$each" "-seed=$seed" "-artifact_prefix=$crashes/" \
         -print_final_stats=1 "${dictionary[@]}" "$corpus" "$tree/tests/fuzz/seeds/$reader" \
         >"$log" 2>&1 || status=$?
     for found in "$crashes"/timeout-*; do
