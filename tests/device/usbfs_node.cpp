@@ -74,7 +74,7 @@ void UsbfsNode::forget(std::deque<Urb>& urbs) {
 }
 
 void UsbfsNode::pull(bool quietly) {
-    MockNode::pull();
+    MockNode::pull(quietly);
     const std::scoped_lock lock(mutex_);
     if (quietly) return;  // then reaping says that the device is gone
     for (Urb& urb : waiting_) {
