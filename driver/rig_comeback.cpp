@@ -53,7 +53,7 @@ Result<void> Rig::collectAgain(const ArmedCapture& armed, const Making& making) 
     Interruption& gap = interruptions_.back();
     CaptureProgress& progress = making.progress;
     progress.interrupt();
-    const auto held = Collector(*link_, assembler_).askForAll(armed, progress);
+    const auto held = Collector(*link_, assembler_, pixels_).askForAll(armed, progress);
     if (!held) return held.error();
     gap.resent += held->held;
     gap.redone += held->gone;
