@@ -62,8 +62,8 @@ MockRig::~MockRig() {
 }
 
 std::string MockRig::usbNode() const { return "/dev/bus/usb/001/" + std::to_string(number_); }
-std::string MockRig::hidName() const { return "0003:1209:0001.0" + std::to_string(number_); }
-std::string MockRig::hidNode() const { return "/dev/hidraw" + std::to_string(number_); }
+std::string MockRig::hidName() const { return "0003:1209:0001.0" + std::to_string(hidNumber_); }
+std::string MockRig::hidNode() const { return "/dev/hidraw" + std::to_string(hidNumber_); }
 
 /// What sysfs and udev of a Linux say of such a device.
 std::string MockRig::description() {
@@ -119,6 +119,11 @@ void MockRig::unplug() {
     if (usbfs_) takeDown(false);
 }
 
+void MockRig::forgetPulled() {
+    const std::scoped_lock lock(mutex_);
+    pulled_.clear();
+}
+
 /// What a script does to the cable happens to the nodes.
 void MockRig::watchTheCable() {
     const std::scoped_lock lock(mutex_);
@@ -134,7 +139,11 @@ void MockRig::watchTheCable() {
 }
 
 void MockRig::putUp() {
-    number_ = number_ == 0 ? 100 + port_ : number_ + 10;
+    // Upwards, and from the start again; three digits, as the node's name has them. Ports do not
+    // meet.
+    constexpr int kPorts = 8, kFirst = 100, kMost = 255;
+    number_ = number_ == 0 || number_ + kPorts > kMost ? kFirst + port_ : number_ + kPorts;
+    hidNumber_ = hidNumber_ == 0 ? kFirst + port_ : hidNumber_ + kPorts;  // never the same again
     live_.with([this](sim::FaultyUsb& usb) {
         serial_ = usb.usb().device().serial();
         pulls_ = usb.pulls();

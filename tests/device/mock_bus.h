@@ -45,6 +45,8 @@ public:
     /// The cable is pulled: transfers in flight end in errors, then the nodes vanish. A fault
     /// script pulls it too.
     void unplug();
+    /// Those who had the pulled nodes open have closed them.
+    void forgetPulled();
     [[nodiscard]] sim::LiveRig& live() { return live_; }
     [[nodiscard]] sim::Faults& faults() { return live_.faults; }
     [[nodiscard]] std::string usbNode() const;
@@ -64,7 +66,8 @@ private:
     std::string serial_;
     int port_;
     int pulls_ = 0;   ///< of the rig's cable when the nodes were made
-    int number_ = 0;  ///< of its nodes: another one each time it is plugged in
+    int number_ = 0;     ///< of its usbfs node: another one each time it is plugged in
+    int hidNumber_ = 0;  ///< of its hidraw node
     std::vector<std::unique_ptr<MockNode>> pulled_;  ///< still open to those who had them
     std::unique_ptr<UsbfsNode> usbfs_;
     std::unique_ptr<HidrawNode> hidraw_;
