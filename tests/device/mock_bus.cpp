@@ -151,6 +151,7 @@ void MockRig::putUp() {
     usbfs_ = std::make_unique<UsbfsNode>(live_, bus_.testbed(), usbNode());
     hidraw_ = std::make_unique<HidrawNode>(live_, bus_.testbed(), hidNode());
     GError* error = nullptr;
+    const std::scoped_lock lock(bus_.listeners());
     if (!umockdev_testbed_add_from_string(bus_.testbed(), description().c_str(), &error)) {
         const std::string why = error->message;
         g_error_free(error);
@@ -165,6 +166,7 @@ void MockRig::takeDown(bool quietly) {
     const std::string port = std::to_string(port_);
     const std::string device = "/sys/devices/usb1/1-" + port;
     const std::string interface = device + "/1-" + port + ":1.";
+    const std::scoped_lock lock(bus_.listeners());
     for (const std::string& path : {interface + "0/" + hidName() + "/hidraw" + hidNode().substr(4),
                                     interface + "0/" + hidName(),
                                     interface + "0",

@@ -28,9 +28,13 @@ public:
     [[nodiscard]] UMockdevTestbed* testbed() const { return testbed_; }
     /// Where a path of the mocked system is in truth.
     [[nodiscard]] std::string real(const std::string& path) const;
+    /// umockdev ends the process when it tells a listener to udev that is just closing. Rigs that
+    /// come and go hold this, and so does whoever opens or closes a transport meanwhile.
+    [[nodiscard]] std::mutex& listeners() { return listeners_; }
 
 private:
     UMockdevTestbed* testbed_;
+    std::mutex listeners_;
 };
 
 class MockRig {
@@ -65,7 +69,7 @@ private:
     mutable std::mutex mutex_;  ///< of what follows
     std::string serial_;
     int port_;
-    int pulls_ = 0;   ///< of the rig's cable when the nodes were made
+    int pulls_ = 0;      ///< of the rig's cable when the nodes were made
     int number_ = 0;     ///< of its usbfs node: another one each time it is plugged in
     int hidNumber_ = 0;  ///< of its hidraw node
     std::vector<std::unique_ptr<MockNode>> pulled_;  ///< still open to those who had them

@@ -2,15 +2,16 @@
 
 #include <malloc.h>
 #include <sys/stat.h>
+#include <umockdev.h>
 
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <future>
 #include <random>
 
 #include "driver/usb_ledger.h"
 #include "tests/device/usb_rig_fixture.h"
+#include "tests/device/without_rights.h"
 
 namespace gonio::device_test {
 namespace {
@@ -46,7 +47,7 @@ struct Holdings {
 /// An open rig that finds its way back by itself.
 class Returning {
 public:
-    explicit Returning(const std::string& serial) : serial_(serial) {
+    Returning(MockBus& bus, const std::string& serial) : bus_(bus), serial_(serial) {
         if (!reopen(10s)) return;
         auto opened = Rig::open(*transport_, kSession);
         EXPECT_TRUE(opened) << opened.error().message;
@@ -56,14 +57,17 @@ public:
         rig->onLost([this](const Error& lost) -> Result<Transport*> {
             noticedAt = steadyNow();
             losses.push_back(lost);
-            transport_.reset();
+            close();
             closedAt = steadyNow();
             if (!reopen(10s)) return Error{ErrorKind::Interrupted, "given up: " + obstacle_};
             openedAt = steadyNow();
             return transport_.get();
         });
     }
-    ~Returning() { rig.reset(); }
+    ~Returning() {
+        rig.reset();
+        close();
+    }
     Returning(const Returning&) = delete;
     Returning& operator=(const Returning&) = delete;
 
@@ -72,19 +76,27 @@ public:
     std::atomic<SteadyTime> noticedAt{}, closedAt{}, openedAt{};
 
 private:
+    void close() {
+        const std::scoped_lock lock(bus_.listeners());
+        transport_.reset();
+    }
     bool reopen(std::chrono::milliseconds patience) {
         for (const SteadyTime end = steadyNow() + patience; steadyNow() < end;) {
-            auto opened = driver::openUsb({.serial = serial_});
-            if (opened) {
-                transport_ = std::move(*opened);
-                return true;
+            {
+                const std::scoped_lock lock(bus_.listeners());
+                auto opened = driver::openUsb({.serial = serial_});
+                if (opened) {
+                    transport_ = std::move(*opened);
+                    return true;
+                }
+                obstacle_ = opened.error().message;
             }
-            obstacle_ = opened.error().message;
             std::this_thread::sleep_for(20ms);
         }
         return false;
     }
 
+    MockBus& bus_;
     std::string serial_, obstacle_;
     std::unique_ptr<Transport> transport_;
 };
@@ -124,7 +136,7 @@ TEST_F(UsbComeback, UnpluggedInMidBracketTimeAfterTimeNoFrameIsLostAndNothingLea
     constexpr int kWarm = 4;  // cycles after which everything that is made once has been made
     constexpr std::uint32_t kSeed = 8;
     std::mt19937 random(kSeed);
-    Returning one("SIM-0042");
+    Returning one(bus, "SIM-0042");
     ASSERT_TRUE(one.rig);
     std::uint64_t step = 1;
     int resent = 0, redone = 0;
@@ -183,6 +195,157 @@ TEST_F(UsbComeback, UnpluggedInMidBracketTimeAfterTimeNoFrameIsLostAndNothingLea
               << redone << " exposed again; heap " << grown / 1000 / (cycles() - kWarm)
               << " kB a cycle; fds " << before.fds << " to " << after.fds << ", threads "
               << before.threads << " to " << after.threads << "\n";
+}
+
+TEST_F(UsbComeback, OfTwoRigsThatStreamOneIsUnpluggedAndTheOtherNoticesNothing) {
+    const sim::DeviceConfig otherConfig = rigConfig("SIM-0043");
+    MockRig otherMock(bus, otherConfig, 2);
+    otherMock.live().with([](sim::FaultyUsb& usb) { usb.device().place(mattGrey()); });
+    otherMock.live().warmUp(kTinyWindow);
+    sim::InProcessDoor door(otherConfig);
+    door.device().place(mattGrey());
+    auto otherTwin = Rig::open(door, kSession);
+    ASSERT_TRUE(otherTwin->configure(kTinyWindow));
+    Returning one(bus, "SIM-0042");
+    Returning other(bus, "SIM-0043");
+    ASSERT_TRUE(one.rig && other.rig);
+    std::atomic<bool> over{false};
+    std::jthread beside([&] {
+        for (std::uint64_t step = 1; !over; ++step) {
+            const auto seen = other.rig->capture(litFrames(step, 3), {litFrames(step + 1, 3)});
+            const auto wanted = otherTwin->capture(litFrames(step, 3));
+            ASSERT_TRUE(seen) << seen.error().message;
+            for (std::size_t i = 0; i < wanted->size(); ++i)
+                EXPECT_EQ((*seen)[i].pixels, (*wanted)[i].pixels) << "step " << step;
+        }
+    });
+    for (std::uint64_t step = 1; step <= 12; ++step) {
+        if (step % 4 == 2) mock.unplug();
+        std::jthread hand([&] {
+            std::this_thread::sleep_for(50ms);
+            mock.plug();
+        });
+        const auto capture = one.rig->capture(litFrames(step, 3));
+        if (!capture) ADD_FAILURE() << capture.error().message;
+        if (capture) expectUndisturbed(*capture, litFrames(step, 3));
+    }
+    over = true;
+    beside.join();
+    EXPECT_EQ(one.losses.size(), 3U);
+    EXPECT_TRUE(other.losses.empty());
+    EXPECT_EQ(other.rig->anomalies(), driver::Anomalies{});
+    EXPECT_EQ(other.rig->link().reopens(), 0U);
+    EXPECT_EQ(driver::usbLedger().streams, 2);
+    EXPECT_EQ(driver::usbLedger().quarantinedThreads, 0);
+}
+
+TEST_F(UsbComeback, SilentReportsAreOpenedAnewAndTheCaptureGoesOn) {
+    Returning one(bus, "SIM-0042");
+    ASSERT_TRUE(one.rig);
+    mock.live().with([](sim::FaultyUsb& usb) { usb.cause(sim::FaultKind::SilenceReports); });
+    const SteadyTime begin = steadyNow();
+    while (one.rig->link().reopens() == 0 && steadyNow() - begin < 6s) {
+        ASSERT_TRUE(one.rig->keepAlive());
+        std::this_thread::sleep_for(10ms);
+    }
+    std::cout << "noticed after " << (steadyNow() - begin) / 1ms << " ms\n";
+    EXPECT_LT(steadyNow() - begin, 6s) << "expected 0.6 s";
+    EXPECT_EQ(one.rig->link().reopens(), 1U);
+    const auto capture = one.rig->capture(litFrames(1, 3));
+    ASSERT_TRUE(capture) << capture.error().message;
+    expectUndisturbed(*capture, litFrames(1, 3));
+    EXPECT_TRUE(one.losses.empty());
+}
+
+TEST_F(UsbComeback, ARigThatHangsUntilItsPortIsResetMeasuresOn) {
+    Returning one(bus, "SIM-0042");
+    ASSERT_TRUE(one.rig);
+    ASSERT_TRUE(one.rig->capture(litFrames(1)));
+    mock.live().with([](sim::FaultyUsb& usb) { usb.cause(sim::FaultKind::HangUntilReset); });
+    const SteadyTime begin = steadyNow();
+    const auto capture = one.rig->capture(litFrames(2, 3));
+    ASSERT_TRUE(capture) << capture.error().message;
+    std::cout << "captured " << (steadyNow() - begin) / 1ms << " ms later\n";
+    EXPECT_LT(steadyNow() - begin, 20s);
+    expectUndisturbed(*capture, litFrames(2, 3));
+    EXPECT_EQ(one.losses.size(), 1U);
+}
+
+TEST_F(UsbComeback, ARigThatHangsForGoodIsLostAndEveryCallEnds) {
+    Returning one(bus, "SIM-0042");
+    ASSERT_TRUE(one.rig);
+    one.rig->onLost({});
+    mock.live().with([](sim::FaultyUsb& usb) { usb.cause(sim::FaultKind::Hang); });
+    const SteadyTime begin = steadyNow();
+    const auto capture = one.rig->capture(litFrames(1));
+    ASSERT_FALSE(capture);
+    EXPECT_EQ(capture.error().kind, ErrorKind::Device);
+    EXPECT_LT(steadyNow() - begin, 20s) << "expected 2 s";
+    EXPECT_TRUE(one.rig->link().lost());
+    const SteadyTime then = steadyNow();
+    EXPECT_FALSE(one.rig->capture(litFrames(1)));
+    EXPECT_FALSE(one.rig->darken());
+    EXPECT_LT(steadyNow() - then, 100ms) << "at once";
+}
+
+TEST_F(UsbComeback, PermissionThatComesLateIsABusyRigUntilThen) {
+    ASSERT_EQ(chmod(bus.real("").c_str(), 0777), 0);
+    // umockdev's own sockets must stay within reach, whatever becomes of the nodes.
+    for (const std::string& node : {mock.usbNode(), mock.hidNode()})
+        ASSERT_EQ(chmod(bus.real("/ioctl" + node).c_str(), 0777), 0);
+    ASSERT_EQ(chmod(bus.real(mock.hidNode()).c_str(), 0666), 0);
+    ASSERT_EQ(chmod(bus.real(mock.usbNode()).c_str(), 0), 0);
+    for (int i = 0; i < 3; ++i) {
+        const WithoutRights unprivileged;
+        const auto refused = driver::openUsb();
+        ASSERT_FALSE(refused);
+        EXPECT_EQ(refused.error().kind, ErrorKind::Busy) << refused.error().message;
+    }
+    ASSERT_EQ(chmod(bus.real(mock.usbNode()).c_str(), 0666), 0);
+    const WithoutRights unprivileged;
+    const auto given = driver::openUsb();
+    ASSERT_TRUE(given) << given.error().message;
+}
+
+class Autosuspend : public UsbRigTest {
+protected:
+    Autosuspend() {
+        umockdev_testbed_set_attribute(
+            bus.testbed(), "/sys/devices/usb1/1-1", "power/control", "auto");
+    }
+    [[nodiscard]] std::string path() const {
+        return bus.real("/sys/devices/usb1/1-1/power/control");
+    }
+    [[nodiscard]] std::string control() const {
+        std::ifstream file(path());
+        std::string word;
+        file >> word;
+        return word;
+    }
+};
+
+TEST_F(Autosuspend, IsForbiddenWhereThatIsAllowed) {
+    ASSERT_EQ(control(), "auto");
+    ASSERT_TRUE(opened());
+    EXPECT_EQ(control(), "on");
+}
+
+TEST_F(Autosuspend, IsWarnedOfOnceWhereItCannotBeForbidden) {
+    ASSERT_EQ(chmod(bus.real("").c_str(), 0777), 0);
+    for (const std::string& node : {mock.usbNode(), mock.hidNode()}) {
+        ASSERT_EQ(chmod(bus.real("/ioctl" + node).c_str(), 0777), 0);
+        ASSERT_EQ(chmod(bus.real(node).c_str(), 0666), 0);
+    }
+    ASSERT_EQ(chmod(path().c_str(), 0444), 0);
+    const WithoutRights unprivileged;
+    testing::internal::CaptureStderr();
+    ASSERT_TRUE(opened());
+    const std::string first = testing::internal::GetCapturedStderr();
+    EXPECT_NE(first.find("power/control"), std::string::npos) << first;
+    testing::internal::CaptureStderr();
+    ASSERT_TRUE(opened());
+    EXPECT_EQ(testing::internal::GetCapturedStderr().find("power/control"), std::string::npos);
+    EXPECT_EQ(control(), "auto");
 }
 
 }  // namespace
