@@ -194,7 +194,7 @@ Result<void> InProcessDoor::recover(UsbAnswer answer) {
                                  [&] { return usb_->control(stalled ? kClearHalt : kGetStatus); });
     if (!decided) return decided.error();
     ++(stalled ? counters_.stalls : counters_.errors);
-    if (limit_.third(now())) return fail("failed three times in 10 s in its stream");
+    if (limit_.third(now())) return failure_.emplace(driver::streamFault(device().serial()));
     return {};
 }
 

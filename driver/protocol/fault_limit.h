@@ -4,7 +4,10 @@
 #include <array>
 #include <chrono>
 #include <optional>
+#include <string>
 
+#include "driver/protocol/constants.h"
+#include "proc/core/result.h"
 #include "proc/core/units.h"
 
 namespace gonio::driver {
@@ -23,5 +26,13 @@ public:
 private:
     std::array<std::optional<Nanoseconds>, 2> last_{};
 };
+
+/// A fault ends what is being done: opening the rig anew would only begin it again. Its status says
+/// that it is no loss of the link.
+[[nodiscard]] inline Error streamFault(const std::string& serial) {
+    return {ErrorKind::Device,
+            "rig " + serial + ": its stream failed three times in 10 s; check its cable",
+            status::kLink};
+}
 
 }  // namespace gonio::driver
