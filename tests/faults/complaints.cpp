@@ -32,7 +32,6 @@ const std::array kLaws{
          FaultKind::SwapChunks}},
     Law{"disordered", {FaultKind::DuplicateChunk, FaultKind::SwapChunks}},
     Law{"duplicates", {FaultKind::DuplicateChunk}},
-    Law{"stale", {}},
     Law{"unknownTypes", {FaultKind::UnknownChunk}},
     Law{"unknownReports", {FaultKind::UnknownReport}},
     Law{"badReports", {FaultKind::SpoilReport}},

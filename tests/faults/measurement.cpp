@@ -119,6 +119,13 @@ void count(const driver::Anomalies& seen, const driver::LinkCounters& link, Outc
     add("missedEvents", link.missedEvents);
 }
 
+/// Of the rig itself. What it had done before the script began is taken off.
+void addStats(const driver::Stats& stats, int sign, Outcome& outcome) {
+    outcome.counts["framesMade"] += sign * static_cast<int>(stats.framesMade);
+    outcome.counts["chunksResent"] += sign * static_cast<int>(stats.resends);
+    outcome.counts["replays"] += sign * static_cast<int>(stats.replays);
+}
+
 /// What the driver saw of the rig, and whether it missed an event.
 void readBack(Rig& rig, RigDoor& door, Outcome& outcome) {
     const auto events = rig.link().takeEvents();
@@ -141,11 +148,7 @@ void readBack(Rig& rig, RigDoor& door, Outcome& outcome) {
     outcome.counts["reopens"] += static_cast<int>(rig.link().reopens());
     count(rig.anomalies(), rig.link().counters(), outcome);
     door.with([&](sim::FaultyUsb& usb) {
-        const driver::Stats& stats = usb.device().stats();
-        outcome.counts["framesMade"] = static_cast<int>(stats.framesMade);
-        outcome.counts["resends"] = static_cast<int>(stats.resends);
-        outcome.counts["replays"] = static_cast<int>(stats.replays);
-        outcome.counts["lapses"] = static_cast<int>(stats.lapses);
+        addStats(usb.device().stats(), 1, outcome);
         for (std::size_t i = 0; i < sim::kFaultKinds; ++i) {
             const auto kind = static_cast<sim::FaultKind>(i);
             outcome.counts["did " + std::string(sim::faultName(kind))] = usb.tally().of(kind);
@@ -175,7 +178,10 @@ void run(RigDoor& door, const RigSetup& setup, Rig& rig, Outcome& outcome) {
 
 Outcome measure(RigDoor& door, const RigSetup& setup, const Row& row) {
     Outcome outcome;
-    door.with([&](sim::FaultyUsb& usb) { usb.play(row.script); });
+    door.with([&](sim::FaultyUsb& usb) {
+        addStats(usb.device().stats(), -1, outcome);
+        usb.play(row.script);
+    });
     const Nanoseconds begin = door.now();
     const auto transport = door.open();
     if (transport) {
