@@ -77,7 +77,6 @@ auto WatchedTransport::watched(Call call) -> decltype(call()) {
     auto done = call();
     if (done || !bootId_) return done;
     const Error seen = done.error();
-    if (seen.deviceStatus == status::kLink) return seen;
     return decided(seen).value_or(seen);
 }
 

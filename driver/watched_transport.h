@@ -5,8 +5,7 @@
 // failure stands for itself, and silent reports are opened anew, twice at most in a row. Else the
 // rig is lost: its port is reset once, the transport is not touched any more, every call repeats
 // the loss, and the clock stands still. attach() takes up another transport; the clock goes on and
-// never back. A stream that fails too often (fault_limit.h) is a fault and no loss. Before watch()
-// nothing is judged.
+// never back. Before watch() nothing is judged.
 
 #include <cstdint>
 #include <optional>

@@ -27,11 +27,11 @@ private:
     std::array<std::optional<Nanoseconds>, 2> last_{};
 };
 
-/// A fault ends what is being done: opening the rig anew would only begin it again. Its status says
-/// that it is no loss of the link.
-[[nodiscard]] inline Error streamFault(const std::string& serial) {
+/// After the third. Its status, LINK, says that the rig is there and that opening it anew is no
+/// cure.
+[[nodiscard]] inline Error streamFault(const std::string& rig) {
     return {ErrorKind::Device,
-            "rig " + serial + ": its stream failed three times in 10 s; check its cable",
+            rig + ": its stream failed three times in 10 s; check its cable and hub",
             status::kLink};
 }
 

@@ -274,8 +274,8 @@ TEST_F(RigComeback, ARigThatHangsHasItsPortResetOnceAndIsLost) {
 }
 
 TEST_F(RigComeback, AFaultOfTheStreamEndsTheCaptureAndNobodyIsAskedToComeBack) {
-    device.onStream =
-        first(1, [this](std::vector<Bytes>&) { plugs.cable().fault = streamFault("TEST-0001"); });
+    device.onStream = first(
+        1, [this](std::vector<Bytes>&) { plugs.cable().fault = streamFault("rig TEST-0001"); });
     const auto capture = rig->capture(kRequest);
     ASSERT_FALSE(capture);
     EXPECT_TRUE(mentions(capture.error(), "three times in 10 s")) << capture.error().message;
