@@ -346,8 +346,14 @@ std::optional<Error> readRecording(std::string_view text) {
 
 // ---- fault scripts
 
+/// Those of the fault matrix.
 std::vector<std::string> soundScripts() {
-    return {"at 1.2s unplug for 300ms\n", "seed 7\nevery 10s flip-payload\n"};
+    std::vector<std::string> all;
+    for (const auto& entry : fs::directory_iterator(GONIO_SOURCE_DIR "/tests/faults/scripts")) {
+        std::ifstream in(entry.path());
+        all.emplace_back(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
+    }
+    return all;
 }
 
 std::optional<Error> readScript(std::string_view text) {
