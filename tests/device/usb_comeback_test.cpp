@@ -166,7 +166,10 @@ TEST_F(UsbComeback, UnpluggedInMidBracketTimeAfterTimeNoFrameIsLostAndNothingLea
             after += one.losses.size() > losses ? 1 : 0;
         }
         hand.join();
-        ASSERT_EQ(one.losses.size(), losses + 1);
+        std::string all;
+        for (std::size_t i = losses; i < one.losses.size(); ++i)
+            all += one.losses[i].message + "\n";
+        EXPECT_EQ(one.losses.size(), losses + 1) << all;
         mock.forgetPulled();
         for (const driver::Interruption& gap : one.rig->takeInterruptions()) {
             EXPECT_TRUE(gap.sameBoot);
