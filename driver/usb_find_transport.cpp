@@ -42,6 +42,42 @@ std::string knownSerial(const std::string& place) {
     return serial;
 }
 
+/// Mbit/s; 0: unknown.
+int speedOf(libusb_device* device) {
+    switch (libusb_get_device_speed(device)) {
+        case LIBUSB_SPEED_LOW: return 1;
+        case LIBUSB_SPEED_FULL: return 12;
+        case LIBUSB_SPEED_HIGH: return 480;
+        case LIBUSB_SPEED_SUPER: return 5000;
+        case LIBUSB_SPEED_SUPER_PLUS: return 10000;
+        default: return 0;
+    }
+}
+
+RigInterfaces interfacesOf(libusb_device* device) {
+    libusb_config_descriptor* config = nullptr;
+    if (libusb_get_active_config_descriptor(device, &config) != 0) return {};
+    const RigInterfaces found = driver::interfacesOf(*config);
+    libusb_free_config_descriptor(config);
+    return found;
+}
+
+std::string stringOf(libusb_device_handle* handle, std::uint8_t index) {
+    constexpr std::uint16_t kEnglish = 0x0409;
+    std::array<std::uint8_t, 255> raw{};
+    const int n = libusb_control_transfer(handle,
+                                          LIBUSB_ENDPOINT_IN,
+                                          LIBUSB_REQUEST_GET_DESCRIPTOR,
+                                          static_cast<std::uint16_t>(LIBUSB_DT_STRING << 8 | index),
+                                          kEnglish,
+                                          raw.data(),
+                                          static_cast<std::uint16_t>(raw.size()),
+                                          kControlMs);
+    return n < 0 ? std::string() : textIn(std::span(raw).first(static_cast<std::size_t>(n)));
+}
+
+}  // namespace
+
 RigInterfaces interfacesOf(const libusb_config_descriptor& config) {
     RigInterfaces found;
     for (int i = 0; i < config.bNumInterfaces; ++i) {
@@ -65,48 +101,15 @@ RigInterfaces interfacesOf(const libusb_config_descriptor& config) {
     return found;
 }
 
-/// Mbit/s; 0: unknown.
-int speedOf(libusb_device* device) {
-    switch (libusb_get_device_speed(device)) {
-        case LIBUSB_SPEED_LOW: return 1;
-        case LIBUSB_SPEED_FULL: return 12;
-        case LIBUSB_SPEED_HIGH: return 480;
-        case LIBUSB_SPEED_SUPER: return 5000;
-        case LIBUSB_SPEED_SUPER_PLUS: return 10000;
-        default: return 0;
-    }
-}
-
-RigInterfaces interfacesOf(libusb_device* device) {
-    libusb_config_descriptor* config = nullptr;
-    if (libusb_get_active_config_descriptor(device, &config) != 0) return {};
-    const RigInterfaces found = interfacesOf(*config);
-    libusb_free_config_descriptor(config);
-    return found;
-}
-
-std::string stringOf(libusb_device_handle* handle, std::uint8_t index) {
-    constexpr std::uint16_t kEnglish = 0x0409;
-    std::array<std::uint8_t, 255> raw{};
-    const int n = libusb_control_transfer(handle,
-                                          LIBUSB_ENDPOINT_IN,
-                                          LIBUSB_REQUEST_GET_DESCRIPTOR,
-                                          static_cast<std::uint16_t>(LIBUSB_DT_STRING << 8 | index),
-                                          kEnglish,
-                                          raw.data(),
-                                          static_cast<std::uint16_t>(raw.size()),
-                                          kControlMs);
-    if (n < 2 || raw[0] < 2 || raw[1] != LIBUSB_DT_STRING) return {};
+std::string textIn(std::span<const std::uint8_t> raw) {
+    if (raw.size() < 2 || raw[0] < 2 || raw[1] != LIBUSB_DT_STRING) return {};
     std::string text;
-    for (std::size_t i = 2; i + 1 < std::min<std::size_t>(raw[0], static_cast<std::size_t>(n));
-         i += 2) {
+    for (std::size_t i = 2; i + 1 < std::min<std::size_t>(raw[0], raw.size()); i += 2) {
         const bool printable = raw[i + 1] == 0 && raw[i] >= ' ' && raw[i] <= '~';
         text += printable ? static_cast<char>(raw[i]) : '?';
     }
     return text;
 }
-
-}  // namespace
 
 void UsbFree::operator()(libusb_context* context) const { libusb_exit(context); }
 void UsbFree::operator()(libusb_device* device) const { libusb_unref_device(device); }
