@@ -53,7 +53,8 @@ public:
         const auto wedges = proc::mirrorWedges();
         const proc::Wedge& wedge = wedges[placed_++ % wedges.size()];
         place({wedge.aboutX, wedge.aboutY});
-        post("jobs/" + std::to_string(job["id"].get<int>()) + "/proceed", "");
+        post("jobs/" + std::to_string(job["id"].get<int>()) + "/proceed",
+             Json{{"question", answered_}}.dump());
         return true;
     }
     int endDaemon() { return daemon_->end().value_or(-1); }
