@@ -171,47 +171,74 @@ std::string joined(const std::set<std::string>& names) {
     return all;
 }
 
-bool isDaemons(const Patient& patient, const DeviceHolder& holder) {
-    return patient.daemon && holder.pid == patient.daemon->pid;
-}
+/// "goniod (pid 55)" of each program that has the rig's nodes open.
+struct Users {
+    std::set<std::string> daemons;  ///< the one that was asked
+    std::set<std::string> others;   ///< have the device
+    std::set<std::string> readers;  ///< have its reports only
+    bool claimed = false;
+    int unseen = 0;  ///< processes that could not be looked into
 
-Finding holder(const Patient& patient, const Sysfs& sysfs) {
+    [[nodiscard]] bool hidden() const { return claimed && others.empty() && daemons.empty(); }
+    [[nodiscard]] std::string unseenText() const {
+        return std::to_string(unseen) + " processes of other users";
+    }
+};
+
+Users usersOf(const Patient& patient, const Sysfs& sysfs) {
     const DeviceHolders found = holdersOf(nodesOf(sysfs), patient.root, ::getpid());
-    const bool claimed = std::any_of(sysfs.interfaces.begin(),
-                                     sysfs.interfaces.end(),
-                                     [](const fs::path& i) { return driverOf(i) == "usbfs"; });
-    std::set<std::string> daemons, others, readers;
+    Users users;
+    users.unseen = found.unseen;
+    users.claimed = std::any_of(sysfs.interfaces.begin(),
+                                sysfs.interfaces.end(),
+                                [](const fs::path& i) { return driverOf(i) == "usbfs"; });
     for (const DeviceHolder& one : found.holders) {
         const std::string who = one.program + " (pid " + std::to_string(one.pid) + ")";
+        const bool daemons = patient.daemon && one.pid == patient.daemon->pid;
         const bool reports = one.node.starts_with("/dev/hidraw");
-        (isDaemons(patient, one) ? daemons : reports ? readers : others).insert(who);
+        (daemons ? users.daemons : reports ? users.readers : users.others).insert(who);
     }
-    const std::string unseen =
-        found.unseen == 0 ? "" : std::to_string(found.unseen) + " processes of other users";
-    if (!daemons.empty())
-        return {"holder", Verdict::Ok, *daemons.begin() + ", the daemon that was asked", ""};
-    if (others.empty() && readers.empty() && claimed) {
+    return users;
+}
+
+/// Whose daemon has another rig does not miss this one.
+bool hasAnother(const Patient& patient) {
+    return patient.daemon && patient.daemon->rigKind == "usb" && !patient.daemon->rigSerial.empty();
+}
+
+Finding holder(const Patient& patient, const Users& users) {
+    if (!users.daemons.empty()) {
+        return {"holder", Verdict::Ok, joined(users.daemons) + ", the daemon that was asked", ""};
+    }
+    if (!users.others.empty() && hasAnother(patient)) {
+        const std::string& its = patient.daemon->rigSerial;
+        return {"holder",
+                Verdict::Note,
+                "open in " + joined(users.others) + "; the daemon that was asked has rig " + its,
+                ""};
+    }
+    if (!users.others.empty()) {
         return {"holder",
                 Verdict::Fail,
-                "a program that cannot be seen has claimed it, one of " + unseen,
-                "run gonio doctor as root: it then names the program"};
-    }
-    if (!others.empty()) {
-        return {"holder",
-                Verdict::Fail,
-                "open in " + joined(others),
+                "open in " + joined(users.others),
                 "end that program, or use its daemon: gonio --socket SOCKET"};
     }
-    if (!readers.empty()) {
+    if (users.hidden()) {
+        return {"holder",
+                Verdict::Fail,
+                "a program that cannot be seen has claimed it, one of " + users.unseenText(),
+                "run gonio doctor as root: it then names the program"};
+    }
+    if (!users.readers.empty()) {
         return {"holder",
                 Verdict::Warn,
-                "its reports are open in " + joined(readers),
+                "its reports are open in " + joined(users.readers),
                 "harmless while that program only reads; end it if commands go astray"};
     }
-    if (found.unseen == 0) return {"holder", Verdict::Ok, "nobody", ""};
+    if (users.unseen == 0) return {"holder", Verdict::Ok, "nobody", ""};
     return {"holder",
             Verdict::Note,
-            "no program of yours; " + unseen + " cannot be looked into",
+            "no program of yours; " + users.unseenText() + " cannot be looked into",
             "as root all are seen"};
 }
 
@@ -225,15 +252,16 @@ std::vector<Finding> examineOutside(const Patient& patient, const driver::UsbRig
             hidrawNode(sysfs),
             speed(rig),
             autosuspend(sysfs),
-            holder(patient, sysfs)};
+            holder(patient, usersOf(patient, sysfs))};
 }
 
 std::string inTheWay(const Patient& patient, const driver::UsbRig& rig) {
     if (!rig.obstacle.empty()) return "it may not be opened (see permission)";
     if (usedByDaemon(patient, rig))
         return "goniod (pid " + std::to_string(patient.daemon->pid) + ") uses it";
-    const Finding held = holder(patient, sysfsOf(patient, rig));
-    return held.verdict == Verdict::Fail ? held.seen : std::string();
+    const Users users = usersOf(patient, sysfsOf(patient, rig));
+    if (!users.others.empty()) return joined(users.others) + " has it open";
+    return users.hidden() ? "a program that cannot be seen has claimed it" : std::string();
 }
 
 }  // namespace gonio::daemon

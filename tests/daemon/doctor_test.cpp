@@ -237,8 +237,15 @@ TEST_F(DoctorOfARig, TheDaemonThatWasAskedMayHaveIt) {
     open(55, "goniod", "/dev/bus/usb/001/007");
     EXPECT_EQ(seen("holder").verdict, Verdict::Ok);
     EXPECT_NE(inTheWay(patient, rig).find("goniod (pid 55)"), std::string::npos);
-    patient.daemon->pid = 56;  // another daemon's
+    patient.daemon = DaemonSeen{.pid = 56};  // it has none
     EXPECT_EQ(seen("holder").verdict, Verdict::Fail);
+}
+
+TEST_F(DoctorOfARig, OfTwoRigsTheOtherDaemonsIsOnlyNotedAndLeftAlone) {
+    patient.daemon = DaemonSeen{.pid = 55, .rigKind = "usb", .rigSerial = "R-2"};
+    open(66, "goniod", "/dev/bus/usb/001/007");
+    EXPECT_EQ(seen("holder").verdict, Verdict::Note);
+    EXPECT_NE(inTheWay(patient, rig).find("goniod (pid 66)"), std::string::npos);
 }
 
 TEST_F(DoctorOfARig, ClaimByAProgramThatCannotBeSeenIsAFailure) {
