@@ -151,7 +151,7 @@ Result<void> doctor(const CommonOptions& common, const DoctorOptions& options) {
     if (common.json) {
         Json list = Json::array();
         for (const Finding& finding : findings) list.push_back(toJson(finding));
-        printJson({{"schema", "gonio/doctor/2"}, {"findings", list}});
+        printJson({{"schema", "gonio/doctor/1"}, {"findings", list}});
     } else {
         print(findings);
     }

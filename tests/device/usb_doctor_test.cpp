@@ -105,8 +105,12 @@ TEST_F(UsbDoctor, RigThatDoesNotAnswerFailsInTime) {
 
 TEST_F(UsbDoctor, RigOfTheDaemonIsLeftToItAndItsTemperaturesAreSaid) {
     test::RunningDaemon daemon(gonio, {"--rig", "usb"});
-    Json seen;
     ASSERT_TRUE(test::waitUntil([&] {
+        const Json now = Json::parse(gonio({"--json", "status"}).out, nullptr, false);
+        return now["rig"]["state"] == "idle";
+    }));
+    Json seen;
+    EXPECT_TRUE(test::waitUntil([&] {
         seen = findings();
         return seen.contains("temperature");
     }));
