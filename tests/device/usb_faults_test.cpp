@@ -1,12 +1,11 @@
 // The real USB code when the rig, the cable or the system does what it should not.
 
-#include <sys/fsuid.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <thread>
 
 #include "tests/device/usb_rig_fixture.h"
+#include "tests/device/without_rights.h"
 
 namespace gonio::device_test {
 namespace {
@@ -65,16 +64,16 @@ protected:
 };
 
 TEST_F(UsbFaults, AStallCostsAChunkAndNoFrame) {
-    mock.live().with([](sim::UsbDevice& usb) { usb.haltStream(); });
+    mock.live().with([](sim::FaultyUsb& usb) { usb.cause(sim::FaultKind::StallBulk); });
     repaired(litFrames(1, 3));
 }
 
 TEST_F(UsbFaults, TheThirdStallInTenSecondsIsAFailure) {
     for (std::uint64_t step = 1; step <= 2; ++step) {
-        mock.live().with([](sim::UsbDevice& usb) { usb.haltStream(); });
+        mock.live().with([](sim::FaultyUsb& usb) { usb.cause(sim::FaultKind::StallBulk); });
         repaired(litFrames(step));
     }
-    mock.live().with([](sim::UsbDevice& usb) { usb.haltStream(); });
+    mock.live().with([](sim::FaultyUsb& usb) { usb.cause(sim::FaultKind::StallBulk); });
     const auto capture = rig->capture(litFrames(3));
     ASSERT_FALSE(capture);
     EXPECT_EQ(capture.error().kind, ErrorKind::Device);
@@ -106,7 +105,8 @@ TEST_F(UsbFaults, WithTheNextCaptureArmedFaultsChangeNoFrame) {
     for (std::uint64_t step = 1; step <= 12; ++step) {
         if (step % 4 == 1) mock.faults().shorten = 1;
         if (step % 4 == 2) mock.faults().overflow = 1;
-        if (step == 7) mock.live().with([](sim::UsbDevice& usb) { usb.haltStream(); });
+        if (step == 7)
+            mock.live().with([](sim::FaultyUsb& usb) { usb.cause(sim::FaultKind::StallBulk); });
         const auto capture = rig->capture(litFrames(step, 2), {litFrames(step + 1, 2)});
         ASSERT_TRUE(capture) << capture.error().message;
         const auto wanted = undisturbed(litFrames(step, 2));
@@ -231,18 +231,6 @@ TEST_F(UsbRigTest, ARigThatAnotherProgramHasIsBusy) {
     EXPECT_EQ(transport.error().kind, ErrorKind::Busy);
     EXPECT_NE(transport.error().message.find("another program"), std::string::npos);
 }
-
-/// This thread, and those it starts, without the right to open what only root may.
-class WithoutRights {
-public:
-    WithoutRights() { setfsuid(kNobody); }
-    ~WithoutRights() { setfsuid(geteuid()); }
-    WithoutRights(const WithoutRights&) = delete;
-    WithoutRights& operator=(const WithoutRights&) = delete;
-
-private:
-    static constexpr uid_t kNobody = 65534;
-};
 
 TEST_F(UsbRigTest, WithoutPermissionItNamesTheUdevRule) {
     ASSERT_EQ(chmod(bus.real("").c_str(), 0777), 0);
