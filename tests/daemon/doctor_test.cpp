@@ -1,13 +1,19 @@
 // The doctor, on computers that a test makes up.
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <fstream>
 
+#include "daemon/device_holders.h"
 #include "daemon/doctor_system.h"
 #include "daemon/doctor_usb.h"
 #include "driver/udev_rule.h"
 #include "tests/support/temp_folder.h"
+#include "tests/support/wait_until.h"
 
 namespace gonio::daemon {
 namespace {
@@ -103,6 +109,27 @@ TEST(UdevRule, IsTheOneThatIsInstalled) {
     for (const std::string& line : driver::udevRule(0x1209, 0x0001)) {
         EXPECT_NE(installed.find("\n" + line + "\n"), std::string::npos) << line;
     }
+}
+
+TEST(DeviceHolders, AreFoundInTheRealProc) {
+    const test::TempFolder folder;
+    const std::string node = folder / "node";
+    std::ofstream(node).put('\n');
+    const pid_t holder = ::fork();
+    if (holder == 0) {
+        ::dup2(::open(node.c_str(), O_RDONLY), STDIN_FILENO);
+        ::execl("/bin/sleep", "sleep", "60", nullptr);
+        ::_exit(1);
+    }
+    DeviceHolders found;
+    EXPECT_TRUE(test::waitUntil([&] {  // until the child has opened it and become sleep
+        found = holdersOf({node}, "/", ::getpid());
+        return !found.holders.empty() && found.holders.front().program == "sleep";
+    }));
+    EXPECT_EQ(found.holders, (std::vector<DeviceHolder>{{holder, "sleep", node}}));
+    EXPECT_TRUE(holdersOf({node}, "/", holder).holders.empty());  // it is oneself
+    ::kill(holder, SIGKILL);
+    ::waitpid(holder, nullptr, 0);
 }
 
 /// A sound rig in /sys, that nobody uses.

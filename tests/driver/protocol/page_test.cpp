@@ -567,7 +567,7 @@ TEST(ProtocolPage, VectorsAreWhatTheCodecWrites) {
         {"chunk header", header},
         {"LEADER", leader},
         {"pixels", pixels}};
-    const auto& page = rows("7. Versions and vectors");
+    const auto& page = rows("5. Versions and vectors");
     ASSERT_EQ(page.size(), vectors.size());
     for (const Cells& row : page) {
         const auto found = vectors.find(row[0]);
