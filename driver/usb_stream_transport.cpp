@@ -266,7 +266,7 @@ void UsbStream::recover(bool stalled) {
     if (!there) return fail(usbError(LIBUSB_ERROR_NO_DEVICE, "read from " + name));
     if (!drained) return fail({ErrorKind::Device, name + ": its transfers do not come back"});
     if (cleared != 0) return fail(usbError(cleared, "clear the halt of " + name));
-    if (again) return fail({ErrorKind::Device, name + ": its stream failed three times in 10 s"});
+    if (again) return fail(streamFault(name));
     holding_ = stopping_;
     submitIdle();
 }
