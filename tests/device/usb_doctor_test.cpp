@@ -61,14 +61,14 @@ TEST_F(UsbDoctor, SoundRigHasNoAilment) {
         if (subject == "holder" && finding["verdict"] == "note") continue;
         EXPECT_EQ(finding["verdict"], "ok") << finding;
     }
-    EXPECT_FALSE(rig.live().with([](sim::UsbDevice& usb) { return usb.device().lit(); }));
+    EXPECT_FALSE(rig.live().with([](sim::FaultyUsb& usb) { return usb.device().lit(); }));
 }
 
 TEST_F(UsbDoctor, HandsOffItClaimsNothing) {
     const Json seen = findings(0, {"--hands-off"});
     EXPECT_EQ(seen["claim"]["verdict"], "note");
     EXPECT_FALSE(seen.contains("self-test"));
-    const auto owner = rig.live().with([](sim::UsbDevice& usb) {
+    const auto owner = rig.live().with([](sim::FaultyUsb& usb) {
         const auto report = usb.device().getFeature(0x02);
         return report ? driver::decodeSessionState(*report)->owner : driver::Owner::Lapsed;
     });
