@@ -113,6 +113,11 @@ void MockRig::plug() {
     if (!usbfs_) putUp();
 }
 
+void MockRig::sendInstead(std::deque<sim::UsbReply> transfers) {
+    const std::scoped_lock lock(mutex_);
+    usbfs_->sendInstead(std::move(transfers));
+}
+
 void MockRig::unplug() {
     const std::scoped_lock lock(mutex_);
     live_.with([](sim::FaultyUsb& usb) { usb.unplug(); });

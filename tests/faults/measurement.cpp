@@ -132,9 +132,8 @@ void readBack(Rig& rig, RigDoor& door, Outcome& outcome) {
     if (events) {
         for (const driver::Event& event : *events) outcome.events.push_back(event.code);
         for (std::size_t i = 1; i < events->size(); ++i) {
-            const bool otherBoot = (*events)[i].code == driver::event::kBoot;
-            if (!otherBoot && (*events)[i].sequence != (*events)[i - 1].sequence + 1)
-                outcome.troubles.emplace_back("an event was missed");
+            if ((*events)[i].sequence != (*events)[i - 1].sequence + 1)
+                ++outcome.counts["eventGaps"];
         }
     } else if (outcome.verdict == "completed") {
         outcome.troubles.push_back("events: " + events.error().message);
@@ -145,6 +144,9 @@ void readBack(Rig& rig, RigDoor& door, Outcome& outcome) {
         outcome.counts["redone"] += gap.redone;
         outcome.counts["otherBoots"] += gap.sameBoot ? 0 : 1;
     }
+    // Their numbers begin anew with each boot, and are one after the other else.
+    if (outcome.counts["eventGaps"] != outcome.counts["otherBoots"])
+        outcome.troubles.emplace_back("an event was missed, or told twice");
     outcome.counts["reopens"] += static_cast<int>(rig.link().reopens());
     count(rig.anomalies(), rig.link().counters(), outcome);
     door.with([&](sim::FaultyUsb& usb) {
