@@ -63,6 +63,7 @@ RigInterfaces interfacesOf(libusb_device* device) {
 }
 
 std::string stringOf(libusb_device_handle* handle, std::uint8_t index) {
+    if (index == 0) return {};  // the device has no such string
     constexpr std::uint16_t kEnglish = 0x0409;
     std::array<std::uint8_t, 255> raw{};
     const int n = libusb_control_transfer(handle,
@@ -84,7 +85,8 @@ RigInterfaces interfacesOf(const libusb_config_descriptor& config) {
         const libusb_interface& interface = config.interface[i];
         if (interface.num_altsetting < 1) continue;
         const libusb_interface_descriptor& main = interface.altsetting[0];
-        if (main.bInterfaceClass == LIBUSB_CLASS_HID) found.hid = main.bInterfaceNumber;
+        const bool hid = main.bInterfaceClass == LIBUSB_CLASS_HID;
+        if (hid && found.hid < 0) found.hid = main.bInterfaceNumber;
         if (main.bInterfaceClass != LIBUSB_CLASS_VENDOR_SPEC ||
             main.bInterfaceSubClass != kStreamSubClass ||
             main.bInterfaceProtocol != kStreamProtocol)
@@ -93,6 +95,7 @@ RigInterfaces interfacesOf(const libusb_config_descriptor& config) {
             const libusb_endpoint_descriptor& endpoint = main.endpoint[e];
             const bool in = (endpoint.bEndpointAddress & LIBUSB_ENDPOINT_IN) != 0;
             if (!in || (endpoint.bmAttributes & 3) != LIBUSB_TRANSFER_TYPE_BULK) continue;
+            if (found.packet > 0) break;  // the first there is
             found.stream = main.bInterfaceNumber;
             found.bulkIn = endpoint.bEndpointAddress;
             found.packet = endpoint.wMaxPacketSize & 0x7FFU;
