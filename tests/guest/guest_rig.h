@@ -1,0 +1,133 @@
+#pragma once
+// A simulated rig on the real USB of the guest's kernel: the cable is vhci-hcd's, and all above it
+// is what a real rig meets: usbcore, usbfs, usbhid, hidraw, libusb and hidapi.
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <memory>
+#include <optional>
+
+#include "driver/rig.h"
+#include "driver/usb_transport.h"
+#include "proc/models/spec.h"
+#include "sim/in_process.h"
+#include "sim/vhci_cable.h"
+#include "tests/support/wait_until.h"
+
+namespace gonio::guest_test {
+
+using namespace std::chrono_literals;
+
+inline constexpr std::uint64_t kSession = 0x1122334455667788;
+inline constexpr Window kSmallWindow{.x = 512, .y = 384, .size = {128, 128}, .binning = 1};
+/// The guest's processors are emulated, and others want the host's.
+inline constexpr auto kPatience = 20s;
+
+inline sim::DeviceConfig rigConfig(std::uint32_t bootCount = 1) {
+    return {.serial = "SIM-0042", .seed = 11, .bootCount = bootCount, .errors = {}};
+}
+
+inline void placeMattGrey(sim::Device& device) {
+    device.place({.role = sim::Role::Sample,
+                  .surface = std::move(*proc::makeModel("lambert,albedo=0.5")),
+                  .wedge = {}});
+}
+
+inline driver::CaptureRequest litFrames(std::uint64_t planStep, int frames = 1) {
+    return {.planStep = planStep,
+            .led = 1,
+            .levels = LedLevels::only(Band::G, 65535),
+            .exposure = Microseconds(320),
+            .frames = frames};
+}
+
+/// A rig and the cable it hangs on.
+struct CabledRig {
+    explicit CabledRig(const sim::DeviceConfig& config = rigConfig(), unsigned number = 1)
+        : live(config), cable(live, number) {
+        live.with([](sim::UsbDevice& usb) { placeMattGrey(usb.device()); });
+        live.warmUp(kSmallWindow);
+    }
+    sim::LiveRig live;
+    sim::VhciCable cable;
+};
+
+/// What a rig that nothing disturbs takes.
+inline std::vector<Frame> undisturbed(const driver::CaptureRequest& request,
+                                      std::uint32_t bootCount = 1) {
+    sim::InProcessDoor door(rigConfig(bootCount));
+    placeMattGrey(door.device());
+    auto twin = driver::Rig::open(door, kSession);
+    EXPECT_TRUE(twin);
+    EXPECT_TRUE(twin->configure(kSmallWindow));
+    auto capture = twin->capture(request);
+    EXPECT_TRUE(capture);
+    return std::move(capture->frames);
+}
+
+class GuestRig : public testing::Test {
+protected:
+    void SetUp() override { plug(); }
+    void TearDown() override {
+        close();
+        rig = {};
+        awaitNone();
+    }
+    /// Until the kernel has made the nodes, and the rig can be opened.
+    void plug() {
+        const auto plugged = rig->cable.plug();
+        ASSERT_TRUE(plugged) << plugged.error().message;
+        awaitOne();
+    }
+    static void awaitOne() {
+        EXPECT_TRUE(test::waitUntil(
+            [] {
+                const auto rigs = driver::listUsb();
+                return rigs && rigs->size() == 1 && rigs->front().obstacle.empty();
+            },
+            kPatience));
+    }
+    static void awaitNone() {
+        EXPECT_TRUE(test::waitUntil(
+            [] {
+                const auto rigs = driver::listUsb();
+                return rigs && rigs->empty();
+            },
+            kPatience));
+    }
+    void open() {
+        auto transport = driver::openUsb();
+        ASSERT_TRUE(transport) << transport.error().message;
+        transport_ = std::move(*transport);
+        auto opened = driver::Rig::open(*transport_, kSession);
+        ASSERT_TRUE(opened) << opened.error().message;
+        driven.emplace(std::move(*opened));
+        const auto configured = driven->configure(kSmallWindow);
+        ASSERT_TRUE(configured) << configured.error().message;
+    }
+    void close() {
+        driven.reset();
+        transport_.reset();
+    }
+    /// Captures, and compares with what a rig takes that nothing disturbs.
+    driver::Capture same(const driver::CaptureRequest& request, std::uint32_t bootCount = 1) {
+        auto capture = driven->capture(request);
+        EXPECT_TRUE(capture) << capture.error().message;
+        if (!capture) return {};
+        const auto wanted = undisturbed(request, bootCount);
+        EXPECT_EQ(capture->size(), wanted.size());
+        for (std::size_t i = 0; i < std::min(capture->size(), wanted.size()); ++i)
+            EXPECT_EQ((*capture)[i].pixels, wanted[i].pixels) << "frame " << i;
+        return std::move(*capture);
+    }
+    [[nodiscard]] driver::Transport& transport() { return *transport_; }
+
+    std::unique_ptr<CabledRig> rig = std::make_unique<CabledRig>();
+    std::optional<driver::Rig> driven;
+
+private:
+    std::unique_ptr<driver::Transport> transport_;
+};
+
+}  // namespace gonio::guest_test
