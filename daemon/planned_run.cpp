@@ -116,7 +116,7 @@ Result<void> PlannedRun::takePilots() {
     std::optional<Alongside<proc::Plan>> planning;
     const Result<void> taken =
         sequencer_.take(shots,
-                        {.frame = [&](std::size_t shot, Frame frame) -> Result<void> {
+                        {.frame = [&](std::size_t shot, Frame&& frame) -> Result<void> {
                              if (shot >= pilots) return addDark(shots[shot].shot.exposure, frame);
                              if (shot == 0) rig_.sensor.celsius = sensorCelsius(frame);
                              pilots_[shot / perState].push_back(std::move(frame));
@@ -266,7 +266,7 @@ Result<Captured> PlannedRun::takeStates() {
     if (Result<void> begun = begin(); !begun) return begun.error();
     const Result<void> taken = sequencer_.take(
         shots,
-        {.frame = [&](std::size_t shot, Frame frame) -> Result<void> {
+        {.frame = [&](std::size_t shot, Frame&& frame) -> Result<void> {
              if (Result<void> on = advanceTo(stateOf[shot]); !on) return on;
              if (stateOf[shot] < states_.size()) return gathering.add(frame);
              again.push_back(std::move(frame));

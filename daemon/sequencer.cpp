@@ -119,7 +119,7 @@ Result<void> Sequencer::take(std::span<const KnownShot> shots, const ShotSink& s
         driver::ArmAhead ahead;
         if (i + 1 < requests.size()) ahead.next = requests[i + 1];
         const auto taken = capture(
-            requests[i], ahead, [&](Frame frame) { return sink.frame(i, std::move(frame)); });
+            requests[i], ahead, [&](Frame&& frame) { return sink.frame(i, std::move(frame)); });
         if (!taken) return taken.error();
         if (Result<void> on = sink.done(i); !on) return on;
     }

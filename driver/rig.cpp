@@ -57,7 +57,8 @@ Rig::~Rig() { (void)close(); }
 
 Result<void> Rig::close() {
     if (!link_) return {};
-    (void)darken();  // a rig that does not hear this may still hear the release, which darkens too
+    // A rig that does not hear this may still hear the release, which darkens too.
+    (void)putOut();
     geometry_.reset();
     return link_->release();
 }
@@ -93,35 +94,53 @@ Result<void> Rig::configure(const Window& window, PixelFormat format) {
                           fits16(size.height) && window.binning <= 255;
     if (!wanted || !sendable) return usage(what + ": not a window of any sensor");
     geometry_.reset();
-    if (ahead_) {
-        if (auto idle = abort(); !idle) return idle.error().in(what);
-    }
-    const auto granted =
-        link_->command(Op::SetFormat,
-                       encode(SetFormat{.format = format,
-                                        .x = static_cast<std::uint16_t>(window.x),
-                                        .y = static_cast<std::uint16_t>(window.y),
-                                        .width = static_cast<std::uint16_t>(size.width),
-                                        .height = static_cast<std::uint16_t>(size.height),
-                                        .binning = static_cast<std::uint8_t>(window.binning)}));
-    if (!granted) return granted.error().in(what);
-    const std::uint32_t bytes = decodeU32(*granted);
-    if (bytes != *wanted) {
-        return Error{ErrorKind::Device,
-                     what + ": the rig says " + std::to_string(bytes) +
-                         " bytes per frame, this window has " + std::to_string(*wanted)};
-    }
-    geometry_ = Geometry{.window = window, .format = format, .frameBytes = bytes};
+    const Geometry geometry{.window = window, .format = format, .frameBytes = *wanted};
+    const auto set = surviving([&]() -> Result<void> {
+        if (ahead_) {
+            if (auto idle = abort(); !idle) return idle;
+        }
+        return setFormat(geometry);
+    });
+    if (!set) return set.error().in(what);
+    geometry_ = geometry;
+    rebooted_.reset();
     return {};
 }
 
+/// The rig must count as many bytes per frame.
+Result<void> Rig::setFormat(const Geometry& geometry) {
+    const Window& window = geometry.window;
+    const auto granted =
+        link_->command(Op::SetFormat,
+                       encode(SetFormat{.format = geometry.format,
+                                        .x = static_cast<std::uint16_t>(window.x),
+                                        .y = static_cast<std::uint16_t>(window.y),
+                                        .width = static_cast<std::uint16_t>(window.size.width),
+                                        .height = static_cast<std::uint16_t>(window.size.height),
+                                        .binning = static_cast<std::uint8_t>(window.binning)}));
+    if (!granted) return granted.error();
+    const std::uint32_t bytes = decodeU32(*granted);
+    if (bytes == geometry.frameBytes) return {};
+    return Error{ErrorKind::Device,
+                 "the rig says " + std::to_string(bytes) + " bytes per frame, this window has " +
+                     std::to_string(geometry.frameBytes)};
+}
+
 Result<void> Rig::darken() {
+    return surviving([&] { return putOut(); });
+}
+
+Result<void> Rig::putOut() {
     if (ahead_) {
         if (auto idle = abort(); !idle) return idle.error().in("darken");
     }
     const auto dark = link_->command(Op::SetLed, encode(SetLed{}));
     if (!dark) return dark.error().in("darken");
     return {};
+}
+
+Result<void> Rig::keepAlive() {
+    return surviving([&] { return link_->keepAlive(); });
 }
 
 Result<void> Rig::check(const CaptureRequest& request) const {
@@ -171,12 +190,14 @@ Result<Capture> Rig::capture(const CaptureRequest& request,
                              const ArmAhead& ahead,
                              const FrameSink& sink) {
     const std::string what = describe(request);
-    if (auto admitted = admit(request, ahead); !admitted) return admitted.error().in(what);
+    const auto admitted = inOneBoot([&] { return admit(request, ahead); });
+    if (!admitted) return admitted.error().in(what);
     const Anomalies before = anomalies();
-    CaptureProgress progress(request.frames);
+    CaptureProgress progress(request.frames, sink ? framesHeld() : 0);
+    provideMemory(request, ahead, static_cast<bool>(sink));
     Result<void> done =
         fill({.request = request, .ahead = ahead, .sink = sink, .progress = progress});
-    if (done && !request.keepLit) done = darken();
+    if (done && !request.keepLit) done = inOneBoot([&] { return putOut(); });
     if (!done) {
         (void)abort();  // what cannot be reached any more goes dark by its own heartbeat
         return failed(done.error(), progress, before).in(what);
@@ -207,31 +228,41 @@ Result<void> Rig::fill(const Making& making) {
     while (true) {
         if (auto tried = attempt(making); !tried) return tried;
         if (progress.toArm() == 0) return {};
-        if (!progress.failed()) {
+        if (progress.failed()) {
+            if (progress.recaptures == kRecaptures)
+                return Error{ErrorKind::Device, "frames are missing or not as planned"};
+            ++progress.recaptures;
+        } else if (!progress.interrupted()) {  // else it is the link's doing
             if (++early > link_->ident().controlLatency)
                 return Error{ErrorKind::Device, "settings do not take effect"};
-        } else if (progress.recaptures == kRecaptures) {
-            return Error{ErrorKind::Device, "frames are missing or not as planned"};
-        } else {
-            ++progress.recaptures;
         }
-        if (auto quiet = quiesce(); !quiet) return quiet;
+        if (auto quiet = inOneBoot([&] { return quiesce(); }); !quiet) return quiet;
     }
 }
 
 Result<void> Rig::attempt(const Making& making) {
-    making.progress.begin();
-    const Result<ArmedCapture> armed = takeUpOrArm(making.request, making.progress.toArm());
+    CaptureProgress& progress = making.progress;
+    progress.begin();
+    const auto armed =
+        inOneBoot([&] { return takeUpOrArm(making.request, making.progress.toArm()); });
     if (!armed) return armed.error();
+    bool again = false;
+    return inOneBoot([&] {
+        return std::exchange(again, true) ? collectAgain(*armed, making) : collect(*armed, making);
+    });
+}
+
+Result<void> Rig::collect(const ArmedCapture& armed, const Making& making) {
     const auto exposed = [&]() -> Result<void> {
         const bool overlaps = making.request.keepLit && link_->ident().frameRam >= kFramesToOverlap;
         if (!making.ahead.next || !overlaps) return {};
+        if (!haveMemoryFor(making.request.frames, making.ahead.next->frames)) return {};
         return armAhead(*making.ahead.next);
     };
     const auto arrived = [&]() -> Result<void> {
-        return making.sink ? making.progress.deliver(making.sink) : Result<void>();
+        return making.sink ? making.progress.deliver(making.sink, pixels_) : Result<void>();
     };
-    return Collector(*link_, assembler_).collect(*armed, making.progress, exposed, arrived);
+    return Collector(*link_, assembler_, pixels_).collect(armed, making.progress, exposed, arrived);
 }
 
 /// What was armed ahead is this request, or admit() would have aborted it; a later attempt finds
@@ -241,22 +272,20 @@ Result<ArmedCapture> Rig::takeUpOrArm(const CaptureRequest& request, int frames)
         assembler_.moveOn();
         return ready->armed;
     }
-    Result<ArmedCapture> armed = arm(request, frames);
-    if (!armed) return armed;
-    if (auto expected = assembler_.expect(armed->expected); !expected) return expected.error();
-    return armed;
+    return arm(request, frames, Turn::Present);
 }
 
 /// A status says that the rig refused, and did nothing: then its own capture will hear it again.
 /// Without one nobody knows what the rig does.
 Result<void> Rig::armAhead(const CaptureRequest& request) {
-    const Result<ArmedCapture> armed = arm(request, request.frames);
+    const Result<ArmedCapture> armed = arm(request, request.frames, Turn::Next);
     if (!armed) {
+        assembler_.forgetNext();
         if (armed.error().deviceStatus != 0) return {};
         return armed.error().in("armed ahead, " + describe(request));
     }
     ahead_ = {.request = request, .armed = *armed};
-    return assembler_.expectNext(armed->expected);
+    return {};
 }
 
 Result<FramePlan> Rig::apply(const CaptureRequest& request) {
@@ -294,18 +323,22 @@ Result<FramePlan> Rig::apply(const CaptureRequest& request) {
 }
 
 /// A capture_id that frame RAM still holds is refused with BAD_ARG (a host that came back repeats
-/// its plan step): the next attempt's is free.
-Result<ArmedCapture> Rig::arm(const CaptureRequest& request, int frames) {
+/// its plan step): the next attempt's is free. The frames are expected before they are asked for.
+Result<ArmedCapture> Rig::arm(const CaptureRequest& request, int frames, Turn turn) {
     const Result<FramePlan> plan = apply(request);
     if (!plan) return plan.error();
     ArmedCapture armed{.expected = {.bootId = link_->ident().bootId,
                                     .captureId = 0,
                                     .frames = frames,
                                     .frameBytes = geometry_->frameBytes,
-                                    .maxChunkPayload = link_->ident().maxChunkPayload},
+                                    .maxChunkPayload = link_->ident().maxChunkPayload,
+                                    .held = framesHeld()},
                        .plan = *plan};
     for (int tries = 1;; ++tries) {
         armed.expected.captureId = ids_.next(request.planStep);
+        const Result<void> expected = turn == Turn::Present ? assembler_.expect(armed.expected)
+                                                            : assembler_.expectNext(armed.expected);
+        if (!expected) return expected.error();
         const auto first = link_->command(Op::Arm,
                                           encode(Arm{.captureId = armed.expected.captureId,
                                                      .frames = static_cast<std::uint16_t>(frames),
@@ -314,6 +347,30 @@ Result<ArmedCapture> Rig::arm(const CaptureRequest& request, int frames) {
         if (first.error().deviceStatus != status::kBadArg || tries == kCaptureIds)
             return first.error();
     }
+}
+
+/// So many may come while a frame is asked for twice: RESEND queues behind what waits in the rig,
+/// which is at most what its RAM holds.
+int Rig::framesHeld() const { return 2 * link_->ident().frameRam + 2; }
+
+/// So many frames of both together may be held as they were sent.
+bool Rig::haveMemoryFor(int frames, int next) const {
+    const auto both = static_cast<std::size_t>(std::min(frames, framesHeld())) +
+                      static_cast<std::size_t>(std::min(next, framesHeld()));
+    return both <= CaptureFrames::kMaxOpenBytes / geometry_->frameBytes;
+}
+
+/// Without a sink all frames are kept. What would need too much is refused when it is expected.
+void Rig::provideMemory(const CaptureRequest& request, const ArmAhead& ahead, bool sink) {
+    const int frames = request.frames, next = ahead.next ? ahead.next->frames : 0;
+    const auto held = [&](int n) { return static_cast<std::size_t>(std::min(n, framesHeld())); };
+    const auto kept = [&](int n) { return sink ? held(n) : static_cast<std::size_t>(n); };
+    const Size size = geometry_->window.sent();
+    const std::size_t limit = CaptureFrames::kMaxOpenBytes;
+    assembler_.provide(geometry_->frameBytes,
+                       std::min(held(frames) + held(next), limit / geometry_->frameBytes));
+    pixels_.provide(
+        size, std::min(kept(frames) + kept(next), limit / (size.pixels() * sizeof(std::uint16_t))));
 }
 
 /// Idle, with nothing on its way: not of the last attempt, nor of what was armed ahead.
