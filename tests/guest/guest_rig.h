@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <optional>
@@ -54,13 +55,17 @@ struct CabledRig {
 };
 
 /// What a rig that nothing disturbs takes.
-inline std::vector<Frame> undisturbed(const driver::CaptureRequest& request,
-                                      std::uint32_t bootCount = 1) {
-    sim::InProcessDoor door(rigConfig(bootCount));
-    placeMattGrey(door.device());
-    auto twin = driver::Rig::open(door, kSession);
-    EXPECT_TRUE(twin);
-    EXPECT_TRUE(twin->configure(kSmallWindow));
+inline std::vector<Frame> undisturbed(const driver::CaptureRequest& request) {
+    // One for all tests: what it works out of the scene is the costly part.
+    static sim::InProcessDoor door(rigConfig());
+    static std::optional<driver::Rig> twin;
+    if (!twin) {
+        placeMattGrey(door.device());
+        auto opened = driver::Rig::open(door, kSession);
+        EXPECT_TRUE(opened);
+        twin.emplace(std::move(*opened));
+        EXPECT_TRUE(twin->configure(kSmallWindow));
+    }
     auto capture = twin->capture(request);
     EXPECT_TRUE(capture);
     return std::move(capture->frames);
@@ -68,39 +73,38 @@ inline std::vector<Frame> undisturbed(const driver::CaptureRequest& request,
 
 class GuestRig : public testing::Test {
 protected:
-    void SetUp() override { plug(); }
-    void TearDown() override {
-        close();
-        rig = {};
-        awaitNone();
+    void SetUp() override {
+        if (!rig) rig = std::make_unique<CabledRig>();
+        if (!rig->cable.plugged()) plug();
     }
+    void TearDown() override { close(); }
+    static void TearDownTestSuite() { rig.reset(); }
+
     /// Until the kernel has made the nodes, and the rig can be opened.
-    void plug() {
+    static void plug() {
         const auto plugged = rig->cable.plug();
         ASSERT_TRUE(plugged) << plugged.error().message;
-        awaitOne();
+        awaitRigs(1);
     }
-    static void awaitOne() {
+    /// So many, each without an obstacle.
+    static void awaitRigs(std::size_t count) {
         EXPECT_TRUE(test::waitUntil(
-            [] {
+            [&] {
                 const auto rigs = driver::listUsb();
-                return rigs && rigs->size() == 1 && rigs->front().obstacle.empty();
+                return rigs && rigs->size() == count &&
+                       std::all_of(rigs->begin(), rigs->end(), [](const driver::UsbRig& one) {
+                           return one.obstacle.empty();
+                       });
             },
-            kPatience));
-    }
-    static void awaitNone() {
-        EXPECT_TRUE(test::waitUntil(
-            [] {
-                const auto rigs = driver::listUsb();
-                return rigs && rigs->empty();
-            },
-            kPatience));
+            kPatience,
+            20ms))
+            << "not seen: " << count << " rigs";
     }
     void open() {
         auto transport = driver::openUsb();
         ASSERT_TRUE(transport) << transport.error().message;
         transport_ = std::move(*transport);
-        auto opened = driver::Rig::open(*transport_, kSession);
+        auto opened = driver::Rig::open(*transport_, ++session_);
         ASSERT_TRUE(opened) << opened.error().message;
         driven.emplace(std::move(*opened));
         const auto configured = driven->configure(kSmallWindow);
@@ -111,11 +115,11 @@ protected:
         transport_.reset();
     }
     /// Captures, and compares with what a rig takes that nothing disturbs.
-    driver::Capture same(const driver::CaptureRequest& request, std::uint32_t bootCount = 1) {
+    driver::Capture same(const driver::CaptureRequest& request) {
         auto capture = driven->capture(request);
         EXPECT_TRUE(capture) << capture.error().message;
         if (!capture) return {};
-        const auto wanted = undisturbed(request, bootCount);
+        const auto wanted = undisturbed(request);
         EXPECT_EQ(capture->size(), wanted.size());
         for (std::size_t i = 0; i < std::min(capture->size(), wanted.size()); ++i)
             EXPECT_EQ((*capture)[i].pixels, wanted[i].pixels) << "frame " << i;
@@ -123,10 +127,11 @@ protected:
     }
     [[nodiscard]] driver::Transport& transport() { return *transport_; }
 
-    std::unique_ptr<CabledRig> rig = std::make_unique<CabledRig>();
+    static inline std::unique_ptr<CabledRig> rig;  ///< of all tests: one stays plugged
     std::optional<driver::Rig> driven;
 
 private:
+    static inline std::uint64_t session_ = kSession;  ///< another one for each opening
     std::unique_ptr<driver::Transport> transport_;
 };
 

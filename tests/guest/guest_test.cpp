@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -21,8 +22,9 @@ namespace {
 namespace fs = std::filesystem;
 
 // The guest is an emulated machine: ten times what these take on a real one.
-constexpr auto kSeen = 3s;   // an unplug
-constexpr auto kBack = 20s;  // a replug
+constexpr auto kSeen = 3s;      // an unplug
+constexpr auto kBack = 20s;     // a replug
+constexpr gid_t kPlugdev = 46;  // in the guest's /etc/group
 
 template <class Call>
 std::chrono::milliseconds timed(Call call) {
@@ -168,7 +170,7 @@ TEST_F(GuestRig, UnpluggedWhileStreamingEveryCallEndsAndThePluggedRigIsTheSame) 
     EXPECT_LT(took, 300ms + kSeen);
     EXPECT_LT(timed([&] { close(); }), kSeen);
     EXPECT_FALSE(rig->live.with([](sim::UsbDevice& usb) { return usb.device().lit(); }));
-    awaitNone();
+    awaitRigs(0);
     EXPECT_LT(timed([&] {
                   plug();
                   open();
@@ -182,12 +184,13 @@ TEST_F(GuestRig, AfterALossOfPowerItIsAnotherBoot) {
     open();
     const auto boot = driven->identify().ident.bootId;
     close();
+    rig.reset();
+    awaitRigs(0);
     rig = std::make_unique<CabledRig>(rigConfig(2));
-    awaitNone();
     plug();
     open();
     EXPECT_NE(driven->identify().ident.bootId, boot);
-    same(litFrames(1, 2), 2);
+    same(litFrames(1, 2));
 }
 
 TEST_F(GuestRig, AResetPortLosesTheLinkAndTheRigIsOpenedAgain) {
@@ -196,7 +199,7 @@ TEST_F(GuestRig, AResetPortLosesTheLinkAndTheRigIsOpenedAgain) {
     const auto boot = driven->identify().ident.bootId;
     (void)transport().resetPort();
     close();
-    awaitOne();
+    awaitRigs(1);
     open();
     EXPECT_EQ(driven->identify().ident.bootId, boot);
     same(litFrames(2, 2));
@@ -224,7 +227,7 @@ TEST_F(GuestRig, AnInterfaceThatAKernelDriverHasIsBusyUntilDetached) {
     EXPECT_EQ(libusb_release_interface(handle, 0), 0);
     libusb_close(handle);
     libusb_exit(context);
-    awaitOne();
+    awaitRigs(1);
     open();
     same(litFrames(1));
 }
@@ -242,16 +245,19 @@ TEST_F(GuestRig, HeldByAnotherProcessItIsBusyAndFreeAfterwards) {
 
 TEST_F(GuestRig, WithoutPermissionItNamesTheCureAndOpensOnceThereIsOne) {
     for (const fs::path& node : nodesOfRig()) ASSERT_EQ(chmod(node.c_str(), 0600), 0);
-    const WithoutRights unprivileged;
-    const auto refused = driver::openUsb();
-    ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().kind, ErrorKind::Busy);
-    EXPECT_NE(refused.error().message.find("udev"), std::string::npos) << refused.error().message;
     // As udevd does it, a moment after the nodes are there.
-    std::jthread late([nodes = nodesOfRig()] {
+    std::atomic<bool> refusedOnce{false};
+    std::jthread late([&, nodes = nodesOfRig()] {
+        (void)test::waitUntil([&] { return refusedOnce.load(); }, kPatience);
         std::this_thread::sleep_for(500ms);
         for (const fs::path& node : nodes) chmod(node.c_str(), 0666);
     });
+    const WithoutRights unprivileged;  // not the thread that began before
+    const auto refused = driver::openUsb();
+    refusedOnce = true;
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().kind, ErrorKind::Busy);
+    EXPECT_NE(refused.error().message.find("udev"), std::string::npos) << refused.error().message;
     EXPECT_TRUE(test::waitUntil([] { return driver::openUsb().has_value(); }, kBack, 100ms));
 }
 
@@ -272,18 +278,32 @@ TEST_F(GuestRig, OfTwoRigsTheSerialNumberSaysWhich) {
     config.serial = "SIM-0043";
     CabledRig other(config, 2);
     ASSERT_TRUE(other.cable.plug());
-    ASSERT_TRUE(test::waitUntil(
-        [] {
-            const auto rigs = driver::listUsb();
-            return rigs && rigs->size() == 2;
-        },
-        kPatience));
+    awaitRigs(2);
     const auto unsure = driver::openUsb();
     ASSERT_FALSE(unsure);
     EXPECT_EQ(unsure.error().kind, ErrorKind::Usage);
     const auto sure = driver::openUsb({.serial = "SIM-0043"});
     ASSERT_TRUE(sure) << sure.error().message;
     EXPECT_EQ((*sure)->strings().serial, "SIM-0043");
+    other.cable.unplug();
+    awaitRigs(1);
+}
+
+/// Run where udevd runs, with the rule that is installed with the program.
+using GuestUdev = GuestRig;
+
+TEST_F(GuestUdev, TheRuleGivesTheNodesToTheGroupAndKeepsTheRigAwake) {
+    rig->cable.unplug();
+    awaitRigs(0);
+    plug();
+    const auto ruled = [](const fs::path& node) {
+        struct stat seen {};
+        return stat(node.c_str(), &seen) == 0 && (seen.st_mode & 0777) == 0660 &&
+               seen.st_gid == kPlugdev;
+    };
+    for (const fs::path& node : nodesOfRig())
+        EXPECT_TRUE(test::waitUntil([&] { return ruled(node); }, kBack)) << node;
+    EXPECT_EQ(textOf(sysfsOfRig() / "power/control"), "on");
 }
 
 }  // namespace
