@@ -15,7 +15,7 @@ constexpr std::size_t kMostReports = 16;    // that nobody has fetched: the olde
 constexpr std::size_t kReadAtOnce = std::size_t{64} << 10;
 constexpr Nanoseconds kPatience = 5s;
 constexpr Nanoseconds kLook = 1ms;  // how often the rig is asked again: a USB frame
-constexpr Nanoseconds kIdle = 50ms;
+constexpr Nanoseconds kIdle = 10ms;
 
 Error gone() { return {ErrorKind::Interrupted, "usbip: the client is gone"}; }
 
@@ -30,10 +30,22 @@ UsbSetup setupOf(const Submit& submit) {
             .length = word(6)};
 }
 
+/// USB/IP does not tell of a bus reset. Linux follows it with a request for 64 bytes of the device
+/// descriptor, which nobody else makes.
+UsbReply control(FaultyUsb& usb, const UsbSetup& setup, std::span<const std::uint8_t> out) {
+    const bool enumerates = setup.requestType == 0x80 && setup.request == 6 &&
+                            setup.value == 0x0100 && setup.length == 64;
+    if (enumerates) usb.resetPort();
+    return usb.control(setup, out);
+}
+
 }  // namespace
 
 UsbipLine::UsbipLine(LiveRig& rig, StreamSocket& socket, usbip::Bytes early)
-    : rig_(rig), socket_(socket), inbox_(std::move(early)) {
+    : rig_(rig),
+      socket_(socket),
+      inbox_(std::move(early)),
+      pulls_(rig.with([](FaultyUsb& usb) { return usb.pulls(); })) {
     rig_.listen([this](const std::vector<std::uint8_t>& report) {
         const std::scoped_lock lock(mutex_);
         if (reports_.size() == kMostReports) reports_.pop_front();
@@ -43,7 +55,11 @@ UsbipLine::UsbipLine(LiveRig& rig, StreamSocket& socket, usbip::Bytes early)
 
 UsbipLine::~UsbipLine() {
     rig_.listen({});
-    rig_.with([](UsbDevice& usb) { usb.reset(); });
+    rig_.with([](FaultyUsb& usb) { usb.resetPort(); });
+}
+
+bool UsbipLine::pulled() {
+    return rig_.with([this](FaultyUsb& usb) { return !usb.plugged() || usb.pulls() != pulls_; });
 }
 
 bool UsbipLine::idle() const {
@@ -54,7 +70,7 @@ bool UsbipLine::idle() const {
 Result<void> UsbipLine::serve(const std::stop_token& stop) {
     usbip::Bytes buffer(kReadAtOnce);
     bool busy = true;
-    while (!stop.stop_requested()) {
+    while (!stop.stop_requested() && !pulled()) {
         const auto read = socket_.read(buffer, busy ? 0ns : idle() ? kIdle : kLook);
         if (!read) return {};
         inbox_.insert(
@@ -64,7 +80,15 @@ Result<void> UsbipLine::serve(const std::stop_token& stop) {
         if (!ended) return ended.error();
         busy = *ended;
     }
+    breakTransfers();
     return {};
+}
+
+/// As a cable ends those in flight that is pulled, most often, a moment before the device is gone.
+void UsbipLine::breakTransfers() {
+    if (!pulled() || rig_.with([](FaultyUsb& usb) { return usb.quietlyPulled(); })) return;
+    for (const auto& queue : waiting_)
+        for (const Submit& submit : queue) (void)end(submit, {.status = -EPROTO});
 }
 
 Result<void> UsbipLine::takeCommands() {
@@ -144,9 +168,9 @@ std::optional<UsbipLine::Outcome> UsbipLine::outcome(Queue queue, const Submit& 
     if (rig_.faults.hung) return std::nullopt;
     if (queue == kInterruptIn) return nextReport();
     bool wholePackets = true;
-    UsbReply reply = rig_.with([&](UsbDevice& usb) -> UsbReply {
+    UsbReply reply = rig_.with([&](FaultyUsb& usb) -> UsbReply {
         switch (queue) {
-            case kControl: return usb.control(setupOf(submit), submit.data);
+            case kControl: return control(usb, setupOf(submit), submit.data);
             case kInterruptOut: return usb.interruptOut(submit.data);
             default:
                 wholePackets = submit.length % usb.bulkPacket() == 0;
@@ -158,9 +182,13 @@ std::optional<UsbipLine::Outcome> UsbipLine::outcome(Queue queue, const Submit& 
     switch (reply.answer) {
         case UsbAnswer::Done: return Outcome{.data = std::move(reply.data)};
         case UsbAnswer::Nak: return std::nullopt;
-        case UsbAnswer::Stall: break;
+        case UsbAnswer::Stall: return Outcome{.status = -EPIPE};
+        case UsbAnswer::Error: return Outcome{.status = -EPROTO};
+        case UsbAnswer::Overflow: return Outcome{.status = -EOVERFLOW};
+        case UsbAnswer::NoMemory: return Outcome{.status = -ENOMEM};
+        case UsbAnswer::Gone: break;
     }
-    return Outcome{.status = -EPIPE};
+    return Outcome{.status = -ENODEV};
 }
 
 Result<void> UsbipLine::end(const Submit& submit, Outcome outcome) {

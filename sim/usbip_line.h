@@ -1,7 +1,8 @@
 #pragma once
 // One rig on one USB/IP connection, as an emulated cable: submitted transfers wait as long as the
 // rig has nothing for them, end as it answers, or are taken back. A client that breaks the rules,
-// reads nothing for seconds or is gone has pulled the cable; so has who asks this end to stop.
+// reads nothing for seconds or is gone has pulled the cable; so has who asks this end to stop. When
+// the rig's own cable is pulled, the connection ends.
 
 #include <array>
 #include <deque>
@@ -49,10 +50,14 @@ private:
     Result<void> end(const usbip::Submit& submit, Outcome outcome);
     Result<void> send(std::span<const std::uint8_t> bytes);
     [[nodiscard]] bool idle() const;
+    /// The cable, by a fault script or by hand.
+    [[nodiscard]] bool pulled();
+    void breakTransfers();
 
     LiveRig& rig_;
     StreamSocket& socket_;
     usbip::Bytes inbox_;
+    int pulls_;
     std::array<std::deque<usbip::Submit>, kQueues> waiting_;
     std::mutex mutex_;  ///< of the reports, which the rig hands on in a thread of its own
     std::deque<usbip::Bytes> reports_;

@@ -90,10 +90,14 @@ Result<StreamSocket> listening(const UsbipAddress& address) {
     return listener;
 }
 
+bool plugged(LiveRig& rig) {
+    return rig.with([](FaultyUsb& usb) { return usb.plugged(); });
+}
+
 }  // namespace
 
 usbip::Exported exported(LiveRig& rig, std::uint32_t number) {
-    return rig.with([&](UsbDevice& usb) {
+    return rig.with([&](FaultyUsb& usb) {
         const bool super = usb.kind() == CameraKind::Usb3;
         const auto device = usb.deviceDescriptor();
         return usbip::Exported{
@@ -121,7 +125,7 @@ Result<std::unique_ptr<UsbipServer>> UsbipServer::open(std::vector<LiveRig*> rig
 UsbipServer::UsbipServer(StreamSocket listener, int port, std::vector<LiveRig*> rigs, Note note)
     : listener_(std::move(listener)), port_(port), note_(std::move(note)) {
     const auto serial = [](LiveRig* rig) {
-        return rig->with([](UsbDevice& usb) { return usb.device().serial(); });
+        return rig->with([](FaultyUsb& usb) { return usb.device().serial(); });
     };
     std::sort(
         rigs.begin(), rigs.end(), [&](LiveRig* a, LiveRig* b) { return serial(a) < serial(b); });
@@ -140,9 +144,10 @@ UsbipServer::~UsbipServer() {
     connections_.clear();
 }
 
-std::vector<usbip::Exported> UsbipServer::rigs() const {
+std::vector<usbip::Exported> UsbipServer::rigs() {
     std::vector<usbip::Exported> all;
-    for (const Served& served : served_) all.push_back(served.exported);
+    for (const Served& served : served_)
+        if (plugged(*served.rig)) all.push_back(served.exported);
     return all;
 }
 
@@ -210,7 +215,7 @@ void UsbipServer::import(const std::string& busId,
     const auto refuse = [&](ImportStatus status) {
         (void)socket.write(usbip::importReply(status, {}), kPatience);
     };
-    if (found == served_.end()) return refuse(ImportStatus::NoDevice);
+    if (found == served_.end() || !plugged(*found->rig)) return refuse(ImportStatus::NoDevice);
     if (found->taken.exchange(true)) return refuse(ImportStatus::Busy);
     tell(busId + " attached");
     {

@@ -42,7 +42,8 @@ public:
     UsbipServer& operator=(const UsbipServer&) = delete;
 
     [[nodiscard]] int port() const { return port_; }
-    [[nodiscard]] std::vector<usbip::Exported> rigs() const;
+    /// Those that are plugged in.
+    [[nodiscard]] std::vector<usbip::Exported> rigs();
 
 private:
     struct Served {

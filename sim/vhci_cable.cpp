@@ -12,6 +12,7 @@
 #include <sstream>
 #include <system_error>
 
+#include "proc/core/log.h"
 #include "sim/usbip_line.h"
 #include "sim/usbip_server.h"
 
@@ -19,6 +20,7 @@ namespace gonio::sim {
 namespace {
 
 constexpr const char* kFolder = "/sys/devices/platform/vhci_hcd.0";
+constexpr std::chrono::milliseconds kLook{10};
 constexpr unsigned kFree = 4;  // VDEV_ST_NULL of the kernel
 
 std::string why(int error) { return std::generic_category().message(error); }
@@ -85,13 +87,28 @@ VhciCable::VhciCable(LiveRig& rig, unsigned number) : rig_(rig), number_(number)
 
 VhciCable::~VhciCable() = default;
 
-bool VhciCable::plugged() const { return line_ && !line_->ended; }
+Result<std::unique_ptr<VhciCable>> VhciCable::attach(LiveRig& rig, unsigned number) {
+    std::unique_ptr<VhciCable> cable(new VhciCable(rig, number));
+    if (auto plugged = cable->plug(); !plugged) return plugged.error();
+    cable->follower_ =
+        std::jthread([&one = *cable](const std::stop_token& stop) { one.follow(stop); });
+    return cable;
+}
 
-void VhciCable::unplug() { line_.reset(); }
+void VhciCable::follow(const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+        std::this_thread::sleep_for(kLook);
+        if (!line_->ended) continue;
+        // A rig that the kernel has let go of by itself is not attached again until it is plugged.
+        const bool again =
+            rig_.with([this](FaultyUsb& usb) { return usb.plugged() && usb.pulls() != pulls_; });
+        if (!again) continue;
+        if (const auto plugged = plug(); !plugged) log::warning(plugged.error().message);
+    }
+}
 
 Result<void> VhciCable::plug() {
-    if (plugged()) return {};
-    line_.reset();
+    pulls_ = rig_.with([](FaultyUsb& usb) { return usb.pulls(); });
     const usbip::Exported rig = exported(rig_, number_);
     const auto port = freePort(rig.speed == usbip::Speed::Super);
     if (!port) return port.error();

@@ -21,22 +21,26 @@ namespace gonio::sim {
 
 class VhciCable {
 public:
-    /// The rig is borrowed; `number` tells several of them apart, from 1.
-    explicit VhciCable(LiveRig& rig, unsigned number = 1);
+    /// The rig is borrowed; `number` tells several of them apart, from 1. No module: NoRig. No
+    /// right, or no free port: Busy. From then on what is done to the rig's plug
+    /// (FaultyUsb::unplug and plug, or a script) happens to the port.
+    [[nodiscard]] static Result<std::unique_ptr<VhciCable>> attach(LiveRig& rig,
+                                                                   unsigned number = 1);
     ~VhciCable();
     VhciCable(const VhciCable&) = delete;
     VhciCable& operator=(const VhciCable&) = delete;
 
-    /// No module: NoRig. No right, or no free port: Busy. Plugged already: as it is.
-    Result<void> plug();
-    void unplug();
-    [[nodiscard]] bool plugged() const;
-
 private:
     struct Line;
+    VhciCable(LiveRig& rig, unsigned number);
+    Result<void> plug();
+    void follow(const std::stop_token& stop);
+
     LiveRig& rig_;
     unsigned number_;
+    int pulls_ = 0;  ///< of the rig when it was attached last
     std::unique_ptr<Line> line_;
+    std::jthread follower_;
 };
 
 }  // namespace gonio::sim

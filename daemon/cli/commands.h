@@ -37,6 +37,7 @@ struct SimServeOptions {
     std::string systematic = "random";
     std::string rigErrors = "none";
     std::string camera = "usb2";
+    std::filesystem::path faults;  ///< a script of what goes wrong; empty: nothing
 };
 /// Simulated rigs as USB devices, until SIGINT or SIGTERM.
 Result<void> simServe(const CommonOptions& common, const SimServeOptions& options);

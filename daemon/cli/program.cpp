@@ -121,6 +121,10 @@ void Program::addSimServe(CLI::App& sim) {
                     simServe.systematic,
                     "errors of the references: none, random (default), or stratum:K");
     sub->add_option("--rig-errors", simServe.rigErrors, "as of sim place");
+    sub->add_option(
+        "--faults",
+        simServe.faults,
+        "a script of what goes wrong with each of them, and when: docs/fault-scripts.md");
 }
 
 void Program::addCalibration() {

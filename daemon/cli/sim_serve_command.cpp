@@ -9,6 +9,8 @@
 #include "daemon/cli/commands.h"
 #include "daemon/cli/output.h"
 #include "daemon/sim_bench.h"
+#include "proc/formats/file_bytes.h"
+#include "sim/faults/fault_script.h"
 #include "sim/usbip_server.h"
 #include "sim/vhci_cable.h"
 
@@ -62,13 +64,25 @@ Result<void> check(const SimServeOptions& options) {
 }
 
 std::string serialOf(sim::LiveRig& rig) {
-    return rig.with([](sim::UsbDevice& usb) { return usb.device().serial(); });
+    return rig.with([](sim::FaultyUsb& usb) { return usb.device().serial(); });
+}
+
+/// Empty: nothing goes wrong.
+Result<std::optional<sim::FaultScript>> scriptOf(const SimServeOptions& options) {
+    if (options.faults.empty()) return std::optional<sim::FaultScript>();
+    const auto text = proc::readFile(options.faults);
+    if (!text) return text.error();
+    auto script = sim::FaultScript::parse(*text);
+    if (!script) return script.error().in(options.faults.string());
+    return std::optional(std::move(*script));
 }
 
 /// In the order of their serial numbers.
 Result<Rigs> makeRigs(const CommonOptions& common, const SimServeOptions& options) {
     auto store = Store::open(common.store);
     if (!store) return store.error();
+    const auto script = scriptOf(options);
+    if (!script) return script.error();
     Rigs rigs;
     std::vector<std::string> serials = options.serials;
     std::sort(serials.begin(), serials.end());
@@ -83,7 +97,7 @@ Result<Rigs> makeRigs(const CommonOptions& common, const SimServeOptions& option
         auto placement = makePlacement(state, *store);
         if (!placement) return placement.error();
         rigs.push_back(std::make_unique<sim::LiveRig>(*config));
-        rigs.back()->with([&](sim::UsbDevice& usb) { usb.device().place(std::move(*placement)); });
+        rigs.back()->with([&](sim::FaultyUsb& usb) { usb.device().place(std::move(*placement)); });
     }
     return rigs;
 }
@@ -140,9 +154,9 @@ Result<void> serveToKernel(const CommonOptions& common,
     std::vector<std::unique_ptr<sim::VhciCable>> cables;
     Json list = Json::array();
     for (const auto& rig : rigs) {
-        cables.push_back(
-            std::make_unique<sim::VhciCable>(*rig, static_cast<unsigned>(cables.size()) + 1));
-        if (auto plugged = cables.back()->plug(); !plugged) return plugged;
+        auto cable = sim::VhciCable::attach(*rig, static_cast<unsigned>(cables.size()) + 1);
+        if (!cable) return cable.error();
+        cables.push_back(std::move(*cable));
         list.push_back({{"serial", serialOf(*rig)}, {"bus_id", nullptr}, {"how", "attached"}});
     }
     announce(

@@ -35,23 +35,39 @@ inline void placeMattGrey(sim::Device& device) {
                   .wedge = {}});
 }
 
-inline driver::CaptureRequest litFrames(std::uint64_t planStep, int frames = 1) {
-    return {.planStep = planStep,
+/// Another step of the plan each time: one session serves all tests.
+inline driver::CaptureRequest litFrames(int frames = 1) {
+    static std::uint64_t step = 0;
+    return {.planStep = ++step,
             .led = 1,
             .levels = LedLevels::only(Band::G, 65535),
             .exposure = Microseconds(320),
             .frames = frames};
 }
 
-/// A rig and the cable it hangs on.
+/// A rig and the cable it hangs on, which the kernel lets go of when this ends.
 struct CabledRig {
     explicit CabledRig(const sim::DeviceConfig& config = rigConfig(), unsigned number = 1)
-        : live(config), cable(live, number) {
-        live.with([](sim::UsbDevice& usb) { placeMattGrey(usb.device()); });
+        : live(config) {
+        live.with([](sim::FaultyUsb& usb) { placeMattGrey(usb.device()); });
         live.warmUp(kSmallWindow);
+        auto attached = sim::VhciCable::attach(live, number);
+        EXPECT_TRUE(attached) << attached.error().message;
+        if (attached) cable = std::move(*attached);
+    }
+    void play(const std::string& script) {
+        auto parsed = sim::FaultScript::parse(script);
+        ASSERT_TRUE(parsed) << parsed.error().message;
+        live.with([&](sim::FaultyUsb& usb) { usb.play(std::move(*parsed)); });
+    }
+    void unplug() {
+        live.with([](sim::FaultyUsb& usb) { usb.unplug(); });
+    }
+    void plug() {
+        live.with([](sim::FaultyUsb& usb) { usb.plug(); });
     }
     sim::LiveRig live;
-    sim::VhciCable cable;
+    std::unique_ptr<sim::VhciCable> cable;  // before its rig
 };
 
 /// What a rig that nothing disturbs takes.
@@ -75,15 +91,18 @@ class GuestRig : public testing::Test {
 protected:
     void SetUp() override {
         if (!rig) rig = std::make_unique<CabledRig>();
-        if (!rig->cable.plugged()) plug();
+        rig->live.with([](sim::FaultyUsb& usb) {
+            usb.play({});
+            if (!usb.plugged()) usb.plug();
+        });
+        awaitRigs(1);
     }
     void TearDown() override { close(); }
     static void TearDownTestSuite() { rig.reset(); }
 
     /// Until the kernel has made the nodes, and the rig can be opened.
     static void plug() {
-        const auto plugged = rig->cable.plug();
-        ASSERT_TRUE(plugged) << plugged.error().message;
+        rig->plug();
         awaitRigs(1);
     }
     /// So many, each without an obstacle.
@@ -104,7 +123,7 @@ protected:
         auto transport = driver::openUsb();
         ASSERT_TRUE(transport) << transport.error().message;
         transport_ = std::move(*transport);
-        auto opened = driver::Rig::open(*transport_, ++session_);
+        auto opened = driver::Rig::open(*transport_, kSession);
         ASSERT_TRUE(opened) << opened.error().message;
         driven.emplace(std::move(*opened));
         const auto configured = driven->configure(kSmallWindow);
@@ -131,7 +150,6 @@ protected:
     std::optional<driver::Rig> driven;
 
 private:
-    static inline std::uint64_t session_ = kSession;  ///< another one for each opening
     std::unique_ptr<driver::Transport> transport_;
 };
 
