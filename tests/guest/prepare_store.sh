@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# Calibrates the rig that the guest will have, in this process's virtual time, and measures the sample
+# once: what the daemon in the guest must measure too.
+#   tests/guest/prepare_store.sh BIN STORE
+set -euo pipefail
+bin=$1
+store=$2
+here=$(dirname "$0")
+sample=$(cat "$here/sample.txt")
+
+"$bin/goniod" --store "$store" --rig sim --profile "$here/rig.toml" &
+daemon=$!
+trap 'kill "$daemon" 2>/dev/null; wait "$daemon" || true' EXIT
+for _ in $(seq 200); do
+    [ ! -S "$store/goniod.sock" ] || break
+    sleep 0.05
+done
+gonio() { "$bin/gonio" --store "$store" --yes --quiet "$@"; }
+gonio sim place mirror --serial SIM-0042 --seed 11 --systematic none
+gonio calibrate mirror
+for tile in black white; do
+    gonio sim place "$tile"
+    gonio calibrate "$tile"
+done
+gonio sim place "$sample"
+gonio measure twin --effort draft
+gonio convert sample:twin "$store/twin.csv"
