@@ -13,7 +13,7 @@ namespace {
 class GuestFaults : public testing::TestWithParam<const char*> {};
 
 TEST_P(GuestFaults, HaveTheSameVerdict) {
-    constexpr int kSide = 256, kChunk = 16384;  // as on the mocked bus
+    constexpr int kSide = 128, kChunk = 8192;  // five chunks, small pictures
     constexpr int kSlowMachine = 10;            // an emulated one
     const fault_test::RigSetup setup = fault_test::setupOf(kSide, kChunk);
     fault_test::Row row = fault_test::readRow(GetParam());

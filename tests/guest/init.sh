@@ -19,7 +19,7 @@ run() {
 for word in $(cat /proc/cmdline); do
     case $word in gonio.filter=*) filter=${word#gonio.filter=} ;; esac
 done
-run "without udevd" /guest_test --gtest_color=no --gtest_brief=0 --gtest_filter="${filter:-GuestRig.*}"
+run "without udevd" /guest_test --gtest_color=no --gtest_filter="${filter:-GuestRig.*:*GuestFaults*}"
 if [ -z "${filter:-}" ]; then
     udevd --daemon
     run "with udevd" /guest_test --gtest_color=no --gtest_filter=GuestRig.Un*:GuestRig.IsEnum*:GuestUdev.*

@@ -36,6 +36,9 @@ ln -s udevadm "$root/bin/udevd"
 cp "$source/tests/guest/init.sh" "$root/init"
 chmod +x "$root/init"
 cp "$source/config/linux/70-gonio.rules" "$root/etc/udev/rules.d/"
+# The scripts of the fault matrix, where the program looks for them.
+mkdir -p "$root$source/tests/faults"
+cp -r "$source/tests/faults/scripts" "$root$source/tests/faults/"
 printf 'root:x:0:0::/:/bin/sh\nnobody:x:65534:65534::/:/bin/sh\n' >"$root/etc/passwd"
 printf 'root:x:0:\nplugdev:x:46:\nnogroup:x:65534:\n' >"$root/etc/group"
 programs=("$build/tests/guest/guest_test")
