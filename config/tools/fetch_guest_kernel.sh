@@ -12,10 +12,15 @@ fail() {
     echo "$1" >&2
     exit 1
 }
+for tool in apt-get dpkg-deb depmod xz; do
+    PATH=$PATH:/usr/sbin:/sbin command -v "$tool" >/dev/null || fail "no guest kernel: $tool not found"
+done
+PATH=$PATH:/usr/sbin:/sbin
 mkdir -p "$folder"
 work=$(mktemp -d "$folder/fetching.XXXXXX")
 trap 'rm -rf "$work"' EXIT
 cd "$work"
+: >log
 
 # Not by name: it changes with every security update.
 package() { apt-cache depends linux-image-amd64 2>/dev/null | awk '/Depends: linux-image-[0-9]/ { print $2; exit }'; }
@@ -52,7 +57,7 @@ for module in "${modules[@]}"; do
         case $file in *.xz) xz -dc "$file" >"../$number-$name" ;; *) cp "$file" "../$number-$name" ;; esac
         ! command -v strip >/dev/null || strip --strip-debug "../$number-$name"
         number=$((number + 1))
-    done < <(/sbin/modprobe -d . -S "$version" --show-depends "$module")
+    done < <(modprobe -d . -S "$version" --show-depends "$module")
 done
 mv vmlinux ..
 echo "$version" >../version

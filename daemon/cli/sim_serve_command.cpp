@@ -97,7 +97,10 @@ Result<Rigs> makeRigs(const CommonOptions& common, const SimServeOptions& option
         auto placement = makePlacement(state, *store);
         if (!placement) return placement.error();
         rigs.push_back(std::make_unique<sim::LiveRig>(*config));
-        rigs.back()->with([&](sim::FaultyUsb& usb) { usb.device().place(std::move(*placement)); });
+        rigs.back()->with([&](sim::FaultyUsb& usb) {
+            usb.device().place(std::move(*placement));
+            if (*script) usb.play(**script);
+        });
     }
     return rigs;
 }

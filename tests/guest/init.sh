@@ -16,13 +16,17 @@ run() {
     shift
     "$@" || failed=1
 }
+filter=
 for word in $(cat /proc/cmdline); do
     case $word in gonio.filter=*) filter=${word#gonio.filter=} ;; esac
 done
-run "without udevd" /guest_test --gtest_color=no --gtest_filter="${filter:-GuestRig.*:*GuestFaults*}"
-if [ -z "${filter:-}" ]; then
+[ "$filter" = daemon ] || run "without udevd" /guest_test --gtest_color=no --gtest_filter="${filter:-GuestRig.*:*GuestFaults*}"
+if [ "$filter" = daemon ]; then
+    run "the daemon" sh /measure.sh
+elif [ -z "$filter" ]; then
     udevd --daemon
     run "with udevd" /guest_test --gtest_color=no --gtest_filter=GuestRig.Un*:GuestRig.IsEnum*:GuestUdev.*
+    run "the daemon" sh /measure.sh
 fi
 echo "GUEST done after $(cut -d ' ' -f 1 /proc/uptime) s"
 echo "GUEST_EXIT $failed"

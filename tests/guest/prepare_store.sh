@@ -23,5 +23,5 @@ for tile in black white; do
     gonio calibrate "$tile"
 done
 gonio sim place "$sample"
-gonio measure twin --effort draft
+gonio measure twin --time-budget 2s
 gonio convert sample:twin "$store/twin.csv"
