@@ -18,15 +18,18 @@ run() {
 }
 filter=
 for word in $(cat /proc/cmdline); do
-    case $word in gonio.filter=*) filter=${word#gonio.filter=} ;; esac
+    case $word in
+        gonio.filter=*) filter=${word#gonio.filter=} ;;
+        gonio.port=*) port=${word#gonio.port=} ;;
+    esac
 done
 [ "$filter" = daemon ] || run "without udevd" /guest_test --gtest_color=no --gtest_filter="${filter:-GuestRig.*:*GuestFaults*}"
 if [ "$filter" = daemon ]; then
-    run "the daemon" sh /measure.sh
+    run "the daemon" sh /measure.sh "$port"
 elif [ -z "$filter" ]; then
     udevd --daemon
     run "with udevd" /guest_test --gtest_color=no --gtest_filter=GuestRig.Un*:GuestRig.IsEnum*:GuestUdev.*
-    run "the daemon" sh /measure.sh
+    [ "$port" = 0 ] || run "the daemon" sh /measure.sh "$port"
 fi
 echo "GUEST done after $(cut -d ' ' -f 1 /proc/uptime) s"
 echo "GUEST_EXIT $failed"

@@ -22,6 +22,15 @@ for tile in black white; do
     gonio sim place "$tile"
     gonio calibrate "$tile"
 done
+# The guest gets the calibrations, and of the sample only what was measured.
+cp -r "$store" "$store.calibrated"
 gonio sim place "$sample"
 gonio measure twin --time-budget 2s
-gonio convert sample:twin "$store/twin.csv"
+gonio convert sample:twin "$store.calibrated/twin.csv"
+trap - EXIT
+kill "$daemon"
+wait "$daemon" || true
+rm -rf "$store"
+mv "$store.calibrated" "$store"
+rm -f "$store"/*.sock* "$store/sim.json"
+find "$store" -name "*.graw" -delete  # what calibrations were made of is not looked at
