@@ -5,7 +5,7 @@
 # is complete is left as it is. Neither root nor a mounted image is needed, but apt's lists are.
 set -euo pipefail
 folder=$1
-modules=(vhci-hcd usbhid hid-generic e1000)
+modules=(vhci-hcd usbhid hid-generic)
 [ ! -f "$folder/version" ] || exit 0
 
 fail() {
@@ -36,7 +36,7 @@ deb=$(ls ./linux-image-*.deb)
 dpkg-deb --fsys-tarfile "$deb" | tar -x --wildcards './boot/vmlinuz-*' './lib/modules/*/modules.*' \
     './lib/modules/*/kernel/drivers/usb/common/*' './lib/modules/*/kernel/drivers/usb/core/*' \
     './lib/modules/*/kernel/drivers/usb/usbip/*' './lib/modules/*/kernel/drivers/hid/hid*' \
-    './lib/modules/*/kernel/drivers/hid/usbhid/*' './lib/modules/*/kernel/drivers/net/ethernet/intel/e1000/*'
+    './lib/modules/*/kernel/drivers/hid/usbhid/*'
 version=$(ls lib/modules)
 depmod -b . "$version" 2>/dev/null
 

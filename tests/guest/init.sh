@@ -6,7 +6,7 @@ mount -t sysfs none /sys
 mount -t devtmpfs none /dev
 mount -t tmpfs none /tmp
 mkdir -p /run
-export PATH=/bin LD_LIBRARY_PATH=/lib GONIO_CONFIG=/config HOME=/tmp
+export PATH=/bin LD_LIBRARY_PATH=/lib HOME=/tmp
 for module in /modules/*.ko; do insmod "$module" || echo "GUEST insmod $module failed"; done
 ip link set lo up
 echo "GUEST ready after $(cut -d ' ' -f 1 /proc/uptime) s"
@@ -18,18 +18,12 @@ run() {
 }
 filter=
 for word in $(cat /proc/cmdline); do
-    case $word in
-        gonio.filter=*) filter=${word#gonio.filter=} ;;
-        gonio.port=*) port=${word#gonio.port=} ;;
-    esac
+    case $word in gonio.filter=*) filter=${word#gonio.filter=} ;; esac
 done
-[ "$filter" = daemon ] || run "without udevd" /guest_test --gtest_color=no --gtest_filter="${filter:-GuestRig.*:*GuestFaults*}"
-if [ "$filter" = daemon ]; then
-    run "the daemon" sh /measure.sh "$port"
-elif [ -z "$filter" ]; then
+run "without udevd" /guest_test --gtest_color=no --gtest_filter="${filter:-GuestRig.*:*GuestFaults*}"
+if [ -z "$filter" ]; then
     udevd --daemon
     run "with udevd" /guest_test --gtest_color=no --gtest_filter=GuestRig.Un*:GuestRig.IsEnum*:GuestUdev.*
-    [ "$port" = 0 ] || run "the daemon" sh /measure.sh "$port"
 fi
 echo "GUEST done after $(cut -d ' ' -f 1 /proc/uptime) s"
 echo "GUEST_EXIT $failed"

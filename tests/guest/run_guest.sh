@@ -8,8 +8,7 @@ source=$(cd "$(dirname "$0")/../.." && pwd)
 build=$1
 filter=${2-}
 kernel=$source/build/guest-kernel
-memory=2048
-store=$build/tests/guest/store  # kept as long as the daemon that made it
+memory=1024
 
 skip() {
     echo "SKIP guest: $1"
@@ -26,33 +25,10 @@ since() { awk -v a="$begin" -v b="$(date +%s.%N)" 'BEGIN { printf "%.1f s", b - 
 why=$("$source/config/tools/fetch_guest_kernel.sh" "$kernel" 2>&1) || skip "${why##*$'\n'}"
 echo "kernel $(cat "$kernel/version") there after $(since)"
 
-# The whole measurement: its twin in virtual time, and the rig that the guest attaches to. The rig runs
-# here, where no frame is emulated.
-measuring() {
-    export GONIO_CONFIG=$source/config
-    if ! [ "$store/twin.csv" -nt "$build/bin/goniod" ]; then
-        rm -rf "$store"
-        "$source/tests/guest/prepare_store.sh" "$build/bin" "$store" >"$work/log" 2>&1 ||
-            { cat "$work/log"; echo "the twin of the guest's measurement failed"; exit 1; }
-        echo "twin measured after $(since)"
-    fi
-    : >"$work/serve.json"
-    "$build/bin/gonio" --store "$work/sim" --json sim serve --usbip --port 0 --serial SIM-0042 --seed 11 \
-        --systematic none --place "$(cat "$source/tests/guest/sample.txt")" >"$work/serve.json" 2>"$work/serve.log" &
-    server=$!
-    for _ in $(seq 200); do
-        port=$(sed -n 's/^  "port": \([0-9]*\),*$/\1/p' "$work/serve.json")
-        [ -z "$port" ] || break
-        sleep 0.05
-    done
-}
 work=$(mktemp -d)
-server=
-trap 'rm -rf "$work"; [ -z "$server" ] || kill "$server"' EXIT
-port=0
-if [ "$filter" = daemon ]; then measuring; fi
+trap 'rm -rf "$work"' EXIT
 root=$work/root
-mkdir -p "$root"/{bin,dev,lib,lib64,modules,proc,sys,tmp,var/run,run,config,etc/udev/rules.d}
+mkdir -p "$root"/{bin,dev,lib,lib64,modules,proc,sys,tmp,run,etc/udev/rules.d}
 cp "$kernel"/*.ko "$root/modules/"
 cp "$(command -v busybox)" "$root/bin/busybox"
 cp "$(command -v udevadm)" "$root/bin/udevadm"
@@ -66,13 +42,6 @@ cp -r "$source/tests/faults/scripts" "$root$source/tests/faults/"
 printf 'root:x:0:0::/:/bin/sh\nnobody:x:65534:65534::/:/bin/sh\n' >"$root/etc/passwd"
 printf 'root:x:0:\nplugdev:x:46:\nnogroup:x:65534:\n' >"$root/etc/group"
 programs=("$build/tests/guest/guest_test")
-if [ "$port" != 0 ]; then
-    cp -r "$source"/config/{rigs,references,quality} "$root/config/"
-    cp "$source"/tests/guest/{rig.toml,measure.sh} "$root/"
-    cp -r "$store" "$root/store"
-    cp /usr/sbin/usbip "$root/bin/"
-    programs+=("$build/bin/goniod" "$build/bin/gonio")
-fi
 for program in "${programs[@]}"; do
     strip -o "$root/$(basename "$program")" "$program" 2>/dev/null || cp "$program" "$root/"
 done
@@ -88,8 +57,8 @@ if [ -r /dev/kvm ] && [ -w /dev/kvm ] && grep -qE '^flags.* (vmx|svm)( |$)' /pro
 boot() {
     timeout --foreground 300 qemu-system-x86_64 -accel "$1" -M pc -m "$memory" -smp 2 \
         -kernel "$kernel/vmlinux" -initrd "$work/initrd" -pidfile "$work/pid" \
-        -append "console=ttyS0 quiet panic=-1 nokaslr mitigations=off acpi=off gonio.port=$port ${filter:+gonio.filter=$filter}" \
-        -display none -nodefaults -no-reboot -netdev user,id=net -device e1000,netdev=net,romfile= -serial stdio </dev/null 2>&1 | sed -u 's/\r$//' | tee "$work/serial"
+        -append "console=ttyS0 quiet panic=-1 nokaslr mitigations=off acpi=off ${filter:+gonio.filter=$filter}" \
+        -display none -nodefaults -no-reboot -serial stdio </dev/null 2>&1 | sed -u 's/\r$//' | tee "$work/serial"
 }
 ready() { grep -q '^GUEST ready' "$work/serial"; }
 # A KVM that starts and hangs is known: then emulation, which always works.
