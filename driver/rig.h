@@ -155,13 +155,15 @@ private:
     };
     Result<void> fill(const Making& making);
     Result<void> collect(const ArmedCapture& armed, const Making& making);
-    Result<void> collectAgain(const ArmedCapture& armed, const Making& making);
+    Result<void> askForHeld(const ArmedCapture& armed, CaptureProgress& progress);
     // Of a rig that was lost (rig_comeback.cpp).
     template <class Work>
     auto surviving(Work work) -> decltype(work());
     template <class Work>
     auto inOneBoot(Work work) -> decltype(work());
+    void beginCall();
     Result<void> comeBack(const Error& lost);
+    [[nodiscard]] Error lostTooOften(const Error& lost) const;
     Result<void> takeUp(Transport& transport);
     Result<void> attempt(const Making& making);
     Result<ArmedCapture> takeUpOrArm(const CaptureRequest& request, int frames);
@@ -191,7 +193,11 @@ private:
     std::optional<OnItsWay> ahead_;
     CaptureIds ids_;
     Comeback onLost_;
+    std::uint32_t boot_ = 0;         ///< of the claim that was taken up last
     std::optional<Error> rebooted_;  ///< not told yet
+    bool faultTold_ = false;         ///< the fault of the stream that the rig is lost by
+    int comebacks_ = 0;              ///< ever
+    int mostComebacks_ = 0;          ///< of those, in this call
     std::vector<Interruption> interruptions_;
 };
 
@@ -205,9 +211,10 @@ auto Rig::surviving(Work work) -> decltype(work()) {
     }
 }
 
-/// As above, and another boot is an error.
+/// As above, and another boot is an error: first of all, before a loss is mended.
 template <class Work>
 auto Rig::inOneBoot(Work work) -> decltype(work()) {
+    if (auto told = std::exchange(rebooted_, std::nullopt)) return *told;
     return surviving([&]() -> decltype(work()) {
         if (auto told = std::exchange(rebooted_, std::nullopt)) return *told;
         return work();
