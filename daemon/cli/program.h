@@ -22,10 +22,12 @@ struct Program {
     std::unique_ptr<CLI::App> app;
     CommonOptions common;
     PlaceRequest place;
+    SimServeOptions simServe;
     ScoreOptions score;
     VerifyOptions verify;
     std::string limit = "1%";
     MeasureOptions measure;
+    DoctorOptions doctor;
     RecalibrateOptions recalibrate;
     SessionOptions session;
     WatchOptions watch;
@@ -57,6 +59,7 @@ struct Program {
                       const std::string& help,
                       Command run);
     void addSim();
+    void addSimServe(CLI::App& sim);
     void addCalibration();
     void addGoal(CLI::App* sub);
     void addMeasuring();

@@ -5,6 +5,7 @@
 #include <umockdev.h>
 
 #include <atomic>
+#include <chrono>
 #include <mutex>
 #include <string>
 #include <vector>
@@ -20,6 +21,9 @@ public:
     MockNode& operator=(const MockNode&) = delete;
     /// From now on the device is gone. Quietly: no transfer in flight ends in an error first.
     virtual void pull(bool quietly);
+    /// Of one that was pulled a while ago, the ends that nobody can come upon any more. Not sooner:
+    /// umockdev ends a process whose open() meets a socket that is just closed.
+    void settle();
 
 protected:
     [[nodiscard]] UMockdevIoctlBase* handler() const { return handler_; }
@@ -29,10 +33,13 @@ protected:
     [[nodiscard]] bool gone() const { return gone_; }
     /// Somebody opens it whom nobody came before.
     virtual void firstOpened() {}
+    /// Somebody opens it: also one who closed it so lately that it still looks open.
+    virtual void opened() {}
     /// A derived class calls it first thing when it ends: no request comes after it.
     void retire();
 
 private:
+    void detach();
     static void onOpen(UMockdevIoctlBase*, UMockdevIoctlClient* client, MockNode* self);
 
     UMockdevTestbed* testbed_;
@@ -41,6 +48,8 @@ private:
     std::mutex mutex_;
     std::vector<UMockdevIoctlClient*> clients_;  ///< of the files that were open last time
     std::atomic<bool> gone_{false};
+    std::chrono::steady_clock::time_point pulledAt_{};
+    bool detached_ = false;
 };
 
 }  // namespace gonio::device_test

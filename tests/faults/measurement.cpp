@@ -16,7 +16,7 @@ constexpr std::uint64_t kSession = 0x1122334455667788;
 constexpr int kBrackets = 3, kExposures = 3, kFrames = 2;
 constexpr int kTries = 3;             // of a bracket
 constexpr Nanoseconds kLook = 100ms;  // between looks for a lost rig
-constexpr Nanoseconds kGiveUp = 4s;
+constexpr Nanoseconds kGiveUp = 2500ms;
 constexpr int kMostComebacks = 60;
 constexpr Nanoseconds kDark = 2500ms;  // after loss of control
 constexpr Nanoseconds kLongest = 60s;  // of all, whatever happens
@@ -176,6 +176,19 @@ void run(RigDoor& door, const RigSetup& setup, Rig& rig, Outcome& outcome) {
     (void)rig.close();
 }
 
+bool isLit(RigDoor& door) {
+    bool lit = false;
+    door.with([&](sim::FaultyUsb& usb) { lit = usb.device().lit(); });
+    return lit;
+}
+
+/// In time: nobody controls the rig any more.
+bool goesDark(RigDoor& door) {
+    for (const Nanoseconds end = door.now() + kDark; isLit(door) && door.now() < end;)
+        door.pause(kLook);
+    return !isLit(door);
+}
+
 }  // namespace
 
 Outcome measure(RigDoor& door, const RigSetup& setup, const Row& row) {
@@ -199,10 +212,7 @@ Outcome measure(RigDoor& door, const RigSetup& setup, const Row& row) {
     }
     door.close();
     if (door.now() - begin > kLongest) outcome.troubles.emplace_back("it took too long");
-    if (outcome.verdict != "completed") door.pause(kDark);
-    door.with([&](sim::FaultyUsb& usb) {
-        if (usb.device().lit()) outcome.troubles.emplace_back("an LED is still lit");
-    });
+    if (!goesDark(door)) outcome.troubles.emplace_back("an LED is still lit");
     return outcome;
 }
 

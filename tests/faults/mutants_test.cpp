@@ -68,7 +68,10 @@ TEST_F(Mutants, TheSoundDriverAmongThemPasses) {
 TEST_F(Mutants, EveryRowOfTheMatrixHasOne) {
     std::set<std::string> have;
     for (const Mutant& mutant : mutants()) have.insert(mutant.row.substr(0, 3));
-    for (const std::string& row : rowNames()) EXPECT_TRUE(have.contains(row.substr(0, 3))) << row;
+    for (const std::string& row : rowNames()) {
+        const bool ofMatrix = row.front() == 'F';
+        EXPECT_TRUE(!ofMatrix || have.contains(row.substr(0, 3))) << row;
+    }
 }
 
 }  // namespace
