@@ -22,7 +22,10 @@ Bench JobRun::measuring(const RigProfile& profile) const {
             .nextPlanStep = bench_.nextPlanStep,
             .clock = bench_.computer,
             .step = [this](const std::string& what) { return bench_.monitor.step(what); },
-            .alive = [this] { bench_.monitor.alive(); },
+            .attendance = {.alive = [this] { bench_.monitor.alive(); },
+                           .suspended =
+                               [this](const Error& why) { return bench_.monitor.suspended(why); },
+                           .setback = [this](const Setback& one) { bench_.monitor.setback(one); }},
             .outlook = [this](const proc::Progress& now) { bench_.monitor.outlook(now); }};
 }
 
