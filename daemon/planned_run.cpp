@@ -123,7 +123,7 @@ Result<void> PlannedRun::takePilots() {
     std::optional<Alongside<proc::Plan>> planning;
     const Result<void> taken =
         sequencer_.take(shots,
-                        {.frame = [&](std::size_t shot, Frame frame) -> Result<void> {
+                        {.frame = [&](std::size_t shot, Frame&& frame) -> Result<void> {
                              if (shot >= pilots) return addDark(shots[shot].shot.exposure, frame);
                              if (shot == 0) rig_.sensor.celsius = sensorCelsius(frame);
                              pilots_[shot / perState].frames.push_back(std::move(frame));
@@ -341,7 +341,7 @@ Result<void> PlannedRun::takeList(Taking& now) {
     return sequencer_.take(
         shots,
         {.frame = [&](std::size_t shot,
-                      Frame frame) { return add(now, now.list[shot], std::move(frame)); },
+                      Frame&& frame) { return add(now, now.list[shot], std::move(frame)); },
          .done = [&](std::size_t shot) -> Result<void> {
              const bool last =
                  shot + 1 == shots.size() || now.list[shot + 1].state != now.list[shot].state;
@@ -394,7 +394,7 @@ Result<void> PlannedRun::advanceTo(Taking& now, std::size_t state) {
     return {};
 }
 
-Result<void> PlannedRun::add(Taking& now, const Planned& planned, Frame frame) {
+Result<void> PlannedRun::add(Taking& now, const Planned& planned, Frame&& frame) {
     if (planned.state == states_.size()) {
         now.again.push_back(std::move(frame));
         return {};

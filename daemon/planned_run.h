@@ -76,7 +76,7 @@ private:
     [[nodiscard]] Result<void> begin(Taking& now, const Planned& first);
     [[nodiscard]] Result<void> openState(Taking& now);
     [[nodiscard]] Result<void> advanceTo(Taking& now, std::size_t state);
-    [[nodiscard]] Result<void> add(Taking& now, const Planned& planned, Frame frame);
+    [[nodiscard]] Result<void> add(Taking& now, const Planned& planned, Frame&& frame);
     [[nodiscard]] Result<void> takePilots();
     [[nodiscard]] Result<void> learn(std::size_t state);
     [[nodiscard]] Result<void> settle();

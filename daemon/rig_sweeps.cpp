@@ -86,7 +86,7 @@ Result<Sweep> takeSweep(const Bench& bench, Sequencer& sequencer, State state) {
     Sweep sweep;
     const Result<void> taken = sequencer.take(
         shots,
-        {.frame = [&](std::size_t shot, Frame frame) -> Result<void> {
+        {.frame = [&](std::size_t shot, Frame&& frame) -> Result<void> {
              (shots[shot].state ? sweep.lit : sweep.dark).push_back(std::move(frame));
              return {};
          },

@@ -164,7 +164,7 @@ Result<void> Sequencer::shoot(std::span<const KnownShot> shots,
     for (std::size_t i = first; i < shots.size() && (i == first || shots[i].joins); ++i) {
         driver::ArmAhead ahead;
         if (i + 1 < requests.size()) ahead.next = requests[i + 1];
-        const auto taken = capture(requests[i], ahead, [&](Frame frame) -> Result<void> {
+        const auto taken = capture(requests[i], ahead, [&](Frame&& frame) -> Result<void> {
             if (Result<void> sound = brackets_.look(shots[i].state, frame); !sound) return sound;
             return sink.frame(i, std::move(frame));
         });

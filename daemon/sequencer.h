@@ -46,7 +46,7 @@ struct BracketSink {
 /// What becomes of the frames of a list of shots, each named by its place in the list.
 struct ShotSink {
     /// Each frame, as it arrives. An error ends the list.
-    std::function<Result<void>(std::size_t shot, Frame frame)> frame;
+    std::function<Result<void>(std::size_t shot, Frame&& frame)> frame;
     /// All frames of a shot are there. An error ends the list.
     std::function<Result<void>(std::size_t shot)> done = [](std::size_t) { return Result<void>(); };
     /// A bracket begins with this shot; once more when it is taken again: what came of it is void.

@@ -31,12 +31,13 @@ void count(Anomalies& anomalies, ChunkFault fault) {
 }  // namespace
 
 Result<void> Assembler::expect(const ExpectedCapture& capture) {
-    present_ = {};
-    next_ = {};
+    present_.giveBack(memory_);
+    next_.giveBack(memory_);
     bootId_.reset();
     Result<CaptureFrames> frames = CaptureFrames::of(capture);
     if (!frames) return frames.error();
     present_ = std::move(*frames);
+    memory_.provide(capture.frameBytes, present_.most());
     bootId_ = capture.bootId;
     return {};
 }
@@ -44,11 +45,16 @@ Result<void> Assembler::expect(const ExpectedCapture& capture) {
 Result<void> Assembler::expectNext(const ExpectedCapture& capture) {
     Result<CaptureFrames> frames = CaptureFrames::of(capture);
     if (!frames) return frames.error();
+    next_.giveBack(memory_);
     next_ = std::move(*frames);
+    memory_.provide(capture.frameBytes, next_.most());
     return {};
 }
 
-void Assembler::moveOn() { present_ = std::exchange(next_, {}); }
+void Assembler::moveOn() {
+    present_.giveBack(memory_);
+    present_ = std::exchange(next_, {});
+}
 
 void Assembler::flushed(std::uint32_t nextStreamSequence) {
     sequence_ = nextStreamSequence;
@@ -71,7 +77,8 @@ bool Assembler::feed(std::span<const std::uint8_t> transfer) {
         return false;
     }
     CaptureFrames& frames = ofPresent ? present_ : next_;
-    const bool fresh = seen.fault == ChunkFault::None && frames.place(seen.chunk, anomalies_);
+    const bool fresh =
+        seen.fault == ChunkFault::None && frames.place(seen.chunk, anomalies_, memory_);
     const bool inTurn = frames.passed(header);
     if (!ofPresent && inTurn) present_.ended();
     return ofPresent && fresh;

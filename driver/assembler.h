@@ -3,11 +3,13 @@
 // transfers as they come, sound or not. What comes out: the present capture's frames
 // (capture_frames.h), and a count of every anomaly. A next capture may be expected beside it, whose
 // frames come while the present one's are still repaired: a chunk of it in its turn says that
-// whatever the present one lacks is lost. Before expect(): every chunk is stale.
+// whatever the present one lacks is lost. Before expect(): every chunk is stale. The memory of the
+// frames waits here from expect() on, and is used again once it is given back.
 
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "driver/capture_frames.h"
@@ -23,7 +25,9 @@ public:
     Result<void> expectNext(const ExpectedCapture& capture);
     /// The next capture is the present one from now on, with all that has come of it.
     void moveOn();
-    void forgetNext() { next_ = {}; }
+    void forgetNext() { next_.giveBack(memory_); }
+    /// Has memory for `frames` of `bytes` wait, beside what frames hold already.
+    void provide(std::size_t bytes, std::size_t frames) { memory_.provide(bytes, frames); }
     /// After FLUSH: older chunks are stale, and the jump to `nextStreamSequence` is no loss.
     void flushed(std::uint32_t nextStreamSequence);
     /// After SET_INTERFACE, a halt or a re-claim: whatever comes next is in sequence.
@@ -34,13 +38,15 @@ public:
 
     // Of the present capture, as in CaptureFrames.
     [[nodiscard]] std::optional<WireFrame> take() { return present_.take(); }
+    /// The frame has been read: its memory is for the next.
+    void giveBack(WireFrame&& frame) { memory_.giveBack(std::move(frame.bytes)); }
     [[nodiscard]] bool finished(int frame) const { return present_.finished(frame); }
     [[nodiscard]] bool begun(int frame) const { return present_.begun(frame); }
     [[nodiscard]] std::vector<MissingChunks> lost() const { return present_.lost(); }
     [[nodiscard]] std::optional<MissingChunks> missing(int frame) const {
         return present_.missing(frame);
     }
-    void askedFor(const MissingChunks& chunks) { present_.askedFor(chunks, anomalies_); }
+    void askedFor(const MissingChunks& chunks) { present_.askedFor(chunks); }
     [[nodiscard]] const std::optional<Aborted>& aborted() const { return present_.aborted(); }
 
     [[nodiscard]] const Anomalies& anomalies() const { return anomalies_; }
@@ -51,6 +57,7 @@ private:
 
     std::optional<std::uint32_t> bootId_;  ///< empty: nothing is expected
     CaptureFrames present_, next_;
+    WireMemory memory_;
     std::optional<std::uint32_t> sequence_;  ///< stream_seq of the next chunk
     std::optional<std::uint32_t> floor_;     ///< after a FLUSH: the first that is not stale
     Anomalies anomalies_;

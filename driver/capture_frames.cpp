@@ -27,7 +27,13 @@ Result<CaptureFrames> CaptureFrames::of(const ExpectedCapture& capture) {
     CaptureFrames frames;
     frames.expected_ = capture;
     frames.chunkCount_ = static_cast<std::uint16_t>(chunks);
-    frames.finished_.assign(static_cast<std::size_t>(capture.frames), false);
+    const auto all = static_cast<std::size_t>(capture.frames);
+    const auto held = capture.held > 0 ? static_cast<std::size_t>(capture.held) : all;
+    frames.most_ = std::min({all, held, kMaxOpenBytes / capture.frameBytes});
+    frames.finished_.assign(all, false);
+    frames.ready_.reserve(frames.most_);
+    frames.spares_.reserve(frames.most_);
+    while (frames.spares_.size() < frames.most_) frames.spares_.push_back(frames.freshNode());
     return frames;
 }
 
@@ -60,7 +66,7 @@ bool CaptureFrames::fits(const ChunkHeader& header) const {
            header.length == dataLength(header.chunkIndex);
 }
 
-bool CaptureFrames::place(const Chunk& chunk, Anomalies& anomalies) {
+bool CaptureFrames::place(const Chunk& chunk, Anomalies& anomalies, WireMemory& memory) {
     const ChunkHeader& header = chunk.header;
     if (header.type < ChunkType::Leader || header.type > ChunkType::Aborted) {
         ++anomalies.unknownTypes;
@@ -82,7 +88,8 @@ bool CaptureFrames::place(const Chunk& chunk, Anomalies& anomalies) {
         if (!header.resent) ++anomalies.duplicates;
         return false;
     }
-    OpenFrame& frame = open(header.frameIndex, anomalies);
+    OpenFrame& frame = open(header.frameIndex);
+    if (frame.bytes.empty() && !hold(frame, anomalies, memory)) return false;
     if (!store(frame, chunk)) {
         ++anomalies.badFrames;
         return false;
@@ -92,18 +99,48 @@ bool CaptureFrames::place(const Chunk& chunk, Anomalies& anomalies) {
     return true;
 }
 
-CaptureFrames::OpenFrame& CaptureFrames::open(int frame, Anomalies& anomalies) {
+/// The record of a frame with room for which of its chunks are there.
+CaptureFrames::OpenFrames::node_type CaptureFrames::freshNode() const {
+    OpenFrames one;
+    one[0].have.assign(std::size_t{chunkCount_} + 2, false);
+    return one.extract(one.begin());
+}
+
+CaptureFrames::OpenFrame& CaptureFrames::open(int frame) {
     const auto found = open_.find(frame);
     if (found != open_.end()) return found->second;
-    while (!open_.empty() && (open_.size() + 1) * expected_.frameBytes > kMaxOpenBytes) {
-        open_.erase(open_.begin());
+    if (spares_.empty()) spares_.push_back(freshNode());  // asked for, with no chunk of it here
+    OpenFrames::node_type node = std::move(spares_.back());
+    spares_.pop_back();
+    node.key() = frame;
+    node.mapped().missing = node.mapped().have.size();
+    return open_.insert(std::move(node)).position->second;
+}
+
+/// As freshNode() made it, for another frame.
+void CaptureFrames::close(OpenFrames::iterator frame) {
+    OpenFrames::node_type node = open_.extract(frame);
+    std::vector<bool> have = std::move(node.mapped().have);
+    have.assign(have.size(), false);
+    node.mapped() = {.have = std::move(have)};
+    if (spares_.size() < spares_.capacity()) spares_.push_back(std::move(node));
+}
+
+/// False: all that may be held is whole, and waits for its reader.
+bool CaptureFrames::hold(OpenFrame& frame, Anomalies& anomalies, WireMemory& memory) {
+    const auto holds = [](const auto& each) { return !each.second.bytes.empty(); };
+    std::size_t held =
+        ready_.size() + static_cast<std::size_t>(std::count_if(open_.begin(), open_.end(), holds));
+    for (; held >= most_; --held) {
         ++anomalies.givenUp;
+        const auto oldest = std::find_if(open_.begin(), open_.end(), holds);
+        if (oldest == open_.end()) return false;
+        memory.giveBack(std::move(oldest->second.bytes));
+        close(oldest);
     }
-    OpenFrame& fresh = open_[frame];
-    fresh.bytes.resize(expected_.frameBytes);
-    fresh.have.assign(std::size_t{chunkCount_} + 2, false);
-    fresh.missing = fresh.have.size();
-    return fresh;
+    frame.bytes = memory.take();
+    frame.bytes.resize(expected_.frameBytes);
+    return true;
 }
 
 bool CaptureFrames::store(OpenFrame& frame, const Chunk& chunk) {
@@ -160,13 +197,13 @@ void CaptureFrames::finish(int index, Anomalies& anomalies) {
                       .trailer = frame.trailer,
                       .bytes = std::move(frame.bytes)});
     finished_[static_cast<std::size_t>(index)] = true;
-    open_.erase(index);
+    close(open_.find(index));
 }
 
 std::optional<WireFrame> CaptureFrames::take() {
     if (ready_.empty()) return std::nullopt;
     WireFrame frame = std::move(ready_.front());
-    ready_.pop_front();
+    ready_.erase(ready_.begin());
     return frame;
 }
 
@@ -202,11 +239,17 @@ std::vector<MissingChunks> CaptureFrames::lost() const {
     return all;
 }
 
-void CaptureFrames::askedFor(const MissingChunks& chunks, Anomalies& anomalies) {
+void CaptureFrames::askedFor(const MissingChunks& chunks) {
     if (chunks.frame < 0 || chunks.frame >= expected_.frames || finished(chunks.frame)) return;
-    OpenFrame& frame = open(chunks.frame, anomalies);
+    OpenFrame& frame = open(chunks.frame);
     frame.ended = false;
     frame.awaited = chunks.last;
+}
+
+void CaptureFrames::giveBack(WireMemory& memory) {
+    for (auto& [index, frame] : open_) memory.giveBack(std::move(frame.bytes));
+    for (WireFrame& frame : ready_) memory.giveBack(std::move(frame.bytes));
+    *this = {};
 }
 
 }  // namespace gonio::driver

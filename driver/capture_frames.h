@@ -2,18 +2,19 @@
 // The frames of one capture, from their chunks (PROTOCOL.md 3). What goes in: chunks of this
 // capture, of a sound header at least. What comes out: frames of which every chunk is there and
 // both CRC levels agree, and what is known to be lost (to be asked for again). A frame's memory is
-// taken when its first sound chunk comes, exactly frameBytes, and never for more frames than
-// kMaxOpenBytes hold: then the oldest unfinished frame is given up. Whether a frame is what was
-// planned is frame_plan.h's business.
+// taken when its first sound chunk comes, exactly frameBytes, and never for more frames than may be
+// held, nor than kMaxOpenBytes hold: then the oldest unfinished frame is given up. Nothing else is
+// allocated for chunks as they come. Whether a frame is what was planned is frame_plan.h's
+// business.
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <map>
 #include <optional>
 #include <vector>
 
 #include "driver/anomalies.h"
+#include "driver/frame_memory.h"
 #include "driver/protocol/chunk.h"
 
 namespace gonio::driver {
@@ -25,6 +26,8 @@ struct ExpectedCapture {
     int frames = 0;
     std::uint32_t frameBytes = 0;
     std::uint32_t maxChunkPayload = 0;
+    /// Frames that may wait for their chunks or their reader at once; 0: all.
+    int held = 0;
 };
 
 /// A frame whole and sound as bytes; its pixels are still packed.
@@ -53,8 +56,10 @@ public:
     static Result<CaptureFrames> of(const ExpectedCapture& capture);
 
     [[nodiscard]] bool owns(const ChunkHeader& header) const;
+    /// Frames that may be held at once: so many buffers should wait.
+    [[nodiscard]] std::size_t most() const { return most_; }
     /// Takes the payload of a chunk that it owns; true when it was new. Anomalies are counted.
-    bool place(const Chunk& chunk, Anomalies& anomalies);
+    bool place(const Chunk& chunk, Anomalies& anomalies, WireMemory& memory);
     /// A chunk that it owns has passed, its payload sound or not. True when it came in its turn:
     /// one of these frames, and not sent again.
     bool passed(const ChunkHeader& header);
@@ -71,15 +76,17 @@ public:
     /// All that an unfinished frame lacks, whether or not it may still come.
     [[nodiscard]] std::optional<MissingChunks> missing(int frame) const;
     /// The chunks have been asked for: the frame is lost again only when the last of them passes.
-    void askedFor(const MissingChunks& chunks, Anomalies& anomalies);
+    void askedFor(const MissingChunks& chunks);
+    /// Ends it all: its memory is for others.
+    void giveBack(WireMemory& memory);
 
     /// The first ABORTED.
     [[nodiscard]] const std::optional<Aborted>& aborted() const { return aborted_; }
 
 private:
     struct OpenFrame {
-        std::vector<std::uint8_t> bytes;
-        std::vector<bool> have;  ///< by chunk_index: leader, data, trailer
+        std::vector<std::uint8_t> bytes;  ///< empty before its first chunk
+        std::vector<bool> have;           ///< by chunk_index: leader, data, trailer
         std::size_t missing = 0;
         Leader leader;
         Trailer trailer;
@@ -89,15 +96,22 @@ private:
 
     [[nodiscard]] bool fits(const ChunkHeader& header) const;
     [[nodiscard]] std::size_t dataLength(std::size_t chunkIndex) const;
-    OpenFrame& open(int frame, Anomalies& anomalies);
+    using OpenFrames = std::map<int, OpenFrame>;
+
+    [[nodiscard]] OpenFrames::node_type freshNode() const;
+    OpenFrame& open(int frame);
+    void close(OpenFrames::iterator frame);
+    bool hold(OpenFrame& frame, Anomalies& anomalies, WireMemory& memory);
     bool store(OpenFrame& frame, const Chunk& chunk);
     void finish(int index, Anomalies& anomalies);
 
     ExpectedCapture expected_;
     std::uint16_t chunkCount_ = 0;  ///< DATA chunks per frame; 0: of no capture
-    std::map<int, OpenFrame> open_;
+    std::size_t most_ = 0;
+    OpenFrames open_;
+    std::vector<OpenFrames::node_type> spares_;  ///< for frames that begin
     std::vector<bool> finished_;
-    std::deque<WireFrame> ready_;
+    std::vector<WireFrame> ready_;
     std::optional<Aborted> aborted_;
     bool over_ = false;
 };

@@ -40,7 +40,12 @@ int CaptureProgress::toArm() const {
     return static_cast<int>(frames_.rend() - last);
 }
 
+bool CaptureProgress::hasRoomFor(int frame) const {
+    return held_ < most_ || static_cast<std::size_t>(frame) == delivered_;
+}
+
 void CaptureProgress::keep(Frame frame) {
+    ++held_;
     const auto i = static_cast<std::size_t>(frame.index);
     frames_[i] = {.there = true, .frame = std::move(frame)};
 }
@@ -66,11 +71,13 @@ bool CaptureProgress::mayAskAgain(int frame, int most) {
     return true;
 }
 
-Result<void> CaptureProgress::deliver(const FrameSink& sink) {
+Result<void> CaptureProgress::deliver(const FrameSink& sink, PixelMemory& memory) {
     while (delivered_ < frames_.size() && frames_[delivered_].there) {
         Frame frame = std::move(*frames_[delivered_].frame);
         frames_[delivered_++].frame.reset();
+        --held_;
         if (Result<void> taken = sink(std::move(frame)); !taken) return taken;
+        memory.giveBack(std::move(frame.pixels));  // empty where the sink has kept it
     }
     return {};
 }

@@ -7,17 +7,21 @@
 #include <string>
 #include <vector>
 
+#include "driver/frame_memory.h"
 #include "proc/core/frame.h"
 #include "proc/core/result.h"
 
 namespace gonio::driver {
 
-/// Takes a frame; its error ends the capture.
-using FrameSink = std::function<Result<void>(Frame)>;
+/// Looks at a frame; its error ends the capture. A sink that moves the frame (its parameter may be
+/// a Frame) keeps it; one that does not (const Frame&) leaves the memory to the next frame.
+using FrameSink = std::function<Result<void>(Frame&&)>;
 
 class CaptureProgress {
 public:
-    explicit CaptureProgress(int frames) : frames_(static_cast<std::size_t>(frames)) {}
+    /// At most `held` frames wait to be delivered; 0: all.
+    explicit CaptureProgress(int frames, int held = 0)
+        : frames_(static_cast<std::size_t>(frames)), most_(held > 0 ? held : frames) {}
 
     /// A new attempt: what was hopeless may be hoped for again.
     void begin();
@@ -31,6 +35,8 @@ public:
     /// Frames up to the last one that is missing: those must be armed again; 0 when all are there.
     [[nodiscard]] int toArm() const;
 
+    /// There is memory to keep it until all before it are there.
+    [[nodiscard]] bool hasRoomFor(int frame) const;
     void keep(Frame frame);
     /// From before the settings took effect: to be taken again, though nobody failed.
     void discard(int frame);
@@ -41,8 +47,8 @@ public:
     /// The first reasons of those that were given, as a list.
     [[nodiscard]] const std::string& evidence() const { return evidence_; }
     /// Hands over the frames that are there, in the order of their index, up to the first that is
-    /// missing. They count as there ever after.
-    [[nodiscard]] Result<void> deliver(const FrameSink& sink);
+    /// missing. They count as there ever after; what the sink leaves goes into `memory`.
+    [[nodiscard]] Result<void> deliver(const FrameSink& sink, PixelMemory& memory);
     /// Those that were not delivered. Precondition: toArm() == 0.
     [[nodiscard]] std::vector<Frame> takeFrames();
 
@@ -55,6 +61,7 @@ private:
         std::optional<Frame> frame{};
     };
     std::vector<Place> frames_;
+    int most_ = 0, held_ = 0;
     std::size_t delivered_ = 0;   ///< so many of the first
     std::vector<int> asked_;      ///< RESENDs of this attempt, by frame
     std::vector<bool> hopeless_;  ///< of this attempt, by frame

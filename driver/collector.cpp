@@ -1,6 +1,7 @@
 #include "driver/collector.h"
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -42,16 +43,23 @@ Result<void> Collector::collect(const ArmedCapture& armed,
 }
 
 void Collector::takeFinished(const FramePlan& plan, CaptureProgress& progress) {
-    while (const auto wire = assembler_.take()) {
-        if (!progress.waitsFor(wire->index)) continue;
-        auto verdict = judge(*wire, plan);
-        if (auto* frame = std::get_if<Frame>(&verdict)) {
-            progress.keep(std::move(*frame));
-        } else if (const auto* rejected = std::get_if<Rejected>(&verdict)) {
-            progress.giveUp(wire->index, rejected->why);
-        } else {
-            progress.discard(wire->index);
-        }
+    while (std::optional<WireFrame> wire = assembler_.take()) {
+        if (progress.waitsFor(wire->index)) weigh(*wire, plan, progress);
+        assembler_.giveBack(std::move(*wire));
+    }
+}
+
+void Collector::weigh(const WireFrame& wire, const FramePlan& plan, CaptureProgress& progress) {
+    if (!progress.hasRoomFor(wire.index))
+        return progress.giveUp(wire.index, "no memory to keep it until those before it are there");
+    Image<std::uint16_t> memory = pixels_.take();
+    Verdict verdict = judge(wire, plan, memory);
+    if (auto* frame = std::get_if<Frame>(&verdict)) return progress.keep(std::move(*frame));
+    pixels_.giveBack(std::move(memory));
+    if (const auto* rejected = std::get_if<Rejected>(&verdict)) {
+        progress.giveUp(wire.index, rejected->why);
+    } else {
+        progress.discard(wire.index);
     }
 }
 

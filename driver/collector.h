@@ -22,8 +22,9 @@ struct ArmedCapture {
 
 class Collector {
 public:
-    /// Both are borrowed. `assembler` expects the capture already.
-    Collector(RigLink& link, Assembler& assembler) : link_(link), assembler_(assembler) {}
+    /// All are borrowed. `assembler` expects the capture already.
+    Collector(RigLink& link, Assembler& assembler, PixelMemory& pixels)
+        : link_(link), assembler_(assembler), pixels_(pixels) {}
 
     /// Until every frame that `progress` waits for is there or given up. `arrived` is called after
     /// any of them may have come, and before the end. `exposed` is called once, when the rig has
@@ -37,6 +38,7 @@ public:
 
 private:
     void takeFinished(const FramePlan& plan, CaptureProgress& progress);
+    void weigh(const WireFrame& wire, const FramePlan& plan, CaptureProgress& progress);
     Result<void> repair(const ArmedCapture& armed, CaptureProgress& progress);
     [[nodiscard]] std::vector<MissingChunks> overdue(int frames) const;
     Result<void> askAgain(const MissingChunks& chunks,
@@ -47,6 +49,7 @@ private:
 
     RigLink& link_;
     Assembler& assembler_;
+    PixelMemory& pixels_;
     Nanoseconds deadline_{0};  ///< of the next new chunk
 };
 

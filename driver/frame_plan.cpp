@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "driver/protocol/pixels.h"
 
@@ -68,8 +69,10 @@ std::array<double, 3> milliamp(const std::array<std::uint16_t, 3>& tenths) {
     return {tenths[0] * 0.1, tenths[1] * 0.1, tenths[2] * 0.1};
 }
 
-Frame toFrame(const WireFrame& wire, const FramePlan& plan) {
-    Frame frame{.pixels = unpackPixels(wire.bytes, plan.window.sent(), plan.format),
+Frame toFrame(const WireFrame& wire, const FramePlan& plan, Image<std::uint16_t>& memory) {
+    if (memory.size() != plan.window.sent()) memory = Image<std::uint16_t>(plan.window.sent());
+    unpackInto(memory, wire.bytes, plan.format);
+    Frame frame{.pixels = std::move(memory),
                 .captureId = wire.captureId,
                 .index = wire.index,
                 .number = wire.leader.frameNumber,
@@ -106,13 +109,18 @@ std::optional<std::uint32_t> frameBytes(const Window& window, PixelFormat format
     return static_cast<std::uint32_t>(bytes);
 }
 
-std::variant<Frame, Early, Rejected> judge(const WireFrame& wire, const FramePlan& plan) {
+Verdict judge(const WireFrame& wire, const FramePlan& plan) {
+    Image<std::uint16_t> memory;
+    return judge(wire, plan, memory);
+}
+
+Verdict judge(const WireFrame& wire, const FramePlan& plan, Image<std::uint16_t>& memory) {
     // frame_number wraps like stream_seq would: the nearer way round decides.
     if (static_cast<std::int32_t>(wire.leader.frameNumber - plan.effectiveFrame) < 0)
         return Early{};
     if (std::string why = mismatch(wire.leader, plan); !why.empty()) return Rejected{why};
     if (std::string why = invalidity(wire.trailer.validity); !why.empty()) return Rejected{why};
-    return toFrame(wire, plan);
+    return toFrame(wire, plan, memory);
 }
 
 }  // namespace gonio::driver

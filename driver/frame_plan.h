@@ -36,8 +36,13 @@ struct Rejected {
 /// Bytes of a frame as sent; empty for an unknown format or an empty window.
 [[nodiscard]] std::optional<std::uint32_t> frameBytes(const Window& window, PixelFormat format);
 
-/// Precondition: `wire.bytes` holds frameBytes(plan.window, plan.format) bytes.
-[[nodiscard]] std::variant<Frame, Early, Rejected> judge(const WireFrame& wire,
-                                                         const FramePlan& plan);
+using Verdict = std::variant<Frame, Early, Rejected>;
+
+/// Precondition: `wire.bytes` holds frameBytes(plan.window, plan.format) bytes. A Frame takes
+/// `memory` for its pixels, where that has their size.
+[[nodiscard]] Verdict judge(const WireFrame& wire,
+                            const FramePlan& plan,
+                            Image<std::uint16_t>& memory);
+[[nodiscard]] Verdict judge(const WireFrame& wire, const FramePlan& plan);
 
 }  // namespace gonio::driver

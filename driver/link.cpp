@@ -188,8 +188,9 @@ Result<void> RigLink::release() {
 }
 
 Result<Arguments> RigLink::command(Op op, const Arguments& arguments) {
-    const std::string what = opName(op) + " to " + rigName(strings_);
-    if (!claimed_) return Error{ErrorKind::Usage, what + ": the rig has been released"};
+    // Put together only where it is said: a PING amid frames allocates nothing.
+    const auto what = [&] { return opName(op) + " to " + rigName(strings_); };
+    if (!claimed_) return Error{ErrorKind::Usage, what() + ": the rig has been released"};
     lastCommand_ =
         lastCommand_ == 0xFFFF ? std::uint16_t{1} : static_cast<std::uint16_t>(lastCommand_ + 1);
     const Command command{.sessionLow = static_cast<std::uint32_t>(options_.sessionId),
@@ -199,7 +200,7 @@ Result<Arguments> RigLink::command(Op op, const Arguments& arguments) {
     const Nanoseconds giveUp = clock().now() + kBusyLimit;
     for (int sends = 0; sends < kSends;) {
         const Result<std::optional<Ack>> ack = sendOnce(command);
-        if (!ack) return ack.error().in(what);
+        if (!ack) return ack.error().in(what());
         if (!*ack) {
             if (++sends < kSends) ++counters_.repeats;
             continue;
@@ -208,15 +209,15 @@ Result<Arguments> RigLink::command(Op op, const Arguments& arguments) {
         if (answer.status == status::kOk) return answer.result;
         if (answer.status == status::kBusy && clock().now() < giveUp) {
             const auto pause = std::chrono::milliseconds(std::max<int>(answer.retryMs, 1));
-            if (auto heard = listen(pause); !heard) return heard.error().in(what);
+            if (auto heard = listen(pause); !heard) return heard.error().in(what());
             continue;
         }
         const bool held = answer.status == status::kBusy || answer.status == status::kNotOwner;
         return Error{held ? ErrorKind::Busy : ErrorKind::Device,
-                     what + ": " + statusName(answer.status),
+                     what() + ": " + statusName(answer.status),
                      answer.status};
     }
-    return deviceError(what + ": no ACK after " + std::to_string(kSends) +
+    return deviceError(what() + ": no ACK after " + std::to_string(kSends) +
                        " sends; check its cable and power");
 }
 

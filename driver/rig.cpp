@@ -173,7 +173,8 @@ Result<Capture> Rig::capture(const CaptureRequest& request,
     const std::string what = describe(request);
     if (auto admitted = admit(request, ahead); !admitted) return admitted.error().in(what);
     const Anomalies before = anomalies();
-    CaptureProgress progress(request.frames);
+    CaptureProgress progress(request.frames, sink ? framesHeld() : 0);
+    provideMemory(request, ahead, static_cast<bool>(sink));
     Result<void> done =
         fill({.request = request, .ahead = ahead, .sink = sink, .progress = progress});
     if (done && !request.keepLit) done = darken();
@@ -226,12 +227,14 @@ Result<void> Rig::attempt(const Making& making) {
     const auto exposed = [&]() -> Result<void> {
         const bool overlaps = making.request.keepLit && link_->ident().frameRam >= kFramesToOverlap;
         if (!making.ahead.next || !overlaps) return {};
+        if (!haveMemoryFor(making.request.frames, making.ahead.next->frames)) return {};
         return armAhead(*making.ahead.next);
     };
     const auto arrived = [&]() -> Result<void> {
-        return making.sink ? making.progress.deliver(making.sink) : Result<void>();
+        return making.sink ? making.progress.deliver(making.sink, pixels_) : Result<void>();
     };
-    return Collector(*link_, assembler_).collect(*armed, making.progress, exposed, arrived);
+    return Collector(*link_, assembler_, pixels_)
+        .collect(*armed, making.progress, exposed, arrived);
 }
 
 /// What was armed ahead is this request, or admit() would have aborted it; a later attempt finds
@@ -241,22 +244,20 @@ Result<ArmedCapture> Rig::takeUpOrArm(const CaptureRequest& request, int frames)
         assembler_.moveOn();
         return ready->armed;
     }
-    Result<ArmedCapture> armed = arm(request, frames);
-    if (!armed) return armed;
-    if (auto expected = assembler_.expect(armed->expected); !expected) return expected.error();
-    return armed;
+    return arm(request, frames, Turn::Present);
 }
 
 /// A status says that the rig refused, and did nothing: then its own capture will hear it again.
 /// Without one nobody knows what the rig does.
 Result<void> Rig::armAhead(const CaptureRequest& request) {
-    const Result<ArmedCapture> armed = arm(request, request.frames);
+    const Result<ArmedCapture> armed = arm(request, request.frames, Turn::Next);
     if (!armed) {
+        assembler_.forgetNext();
         if (armed.error().deviceStatus != 0) return {};
         return armed.error().in("armed ahead, " + describe(request));
     }
     ahead_ = {.request = request, .armed = *armed};
-    return assembler_.expectNext(armed->expected);
+    return {};
 }
 
 Result<FramePlan> Rig::apply(const CaptureRequest& request) {
@@ -294,18 +295,22 @@ Result<FramePlan> Rig::apply(const CaptureRequest& request) {
 }
 
 /// A capture_id that frame RAM still holds is refused with BAD_ARG (a host that came back repeats
-/// its plan step): the next attempt's is free.
-Result<ArmedCapture> Rig::arm(const CaptureRequest& request, int frames) {
+/// its plan step): the next attempt's is free. The frames are expected before they are asked for.
+Result<ArmedCapture> Rig::arm(const CaptureRequest& request, int frames, Turn turn) {
     const Result<FramePlan> plan = apply(request);
     if (!plan) return plan.error();
     ArmedCapture armed{.expected = {.bootId = link_->ident().bootId,
                                     .captureId = 0,
                                     .frames = frames,
                                     .frameBytes = geometry_->frameBytes,
-                                    .maxChunkPayload = link_->ident().maxChunkPayload},
+                                    .maxChunkPayload = link_->ident().maxChunkPayload,
+                                    .held = framesHeld()},
                        .plan = *plan};
     for (int tries = 1;; ++tries) {
         armed.expected.captureId = ids_.next(request.planStep);
+        const Result<void> expected = turn == Turn::Present ? assembler_.expect(armed.expected)
+                                                            : assembler_.expectNext(armed.expected);
+        if (!expected) return expected.error();
         const auto first = link_->command(Op::Arm,
                                           encode(Arm{.captureId = armed.expected.captureId,
                                                      .frames = static_cast<std::uint16_t>(frames),
@@ -314,6 +319,30 @@ Result<ArmedCapture> Rig::arm(const CaptureRequest& request, int frames) {
         if (first.error().deviceStatus != status::kBadArg || tries == kCaptureIds)
             return first.error();
     }
+}
+
+/// So many may come while a frame is asked for twice: RESEND queues behind what waits in the rig,
+/// which is at most what its RAM holds.
+int Rig::framesHeld() const { return 2 * link_->ident().frameRam + 2; }
+
+/// So many frames of both together may be held as they were sent.
+bool Rig::haveMemoryFor(int frames, int next) const {
+    const auto both = static_cast<std::size_t>(std::min(frames, framesHeld())) +
+                      static_cast<std::size_t>(std::min(next, framesHeld()));
+    return both <= CaptureFrames::kMaxOpenBytes / geometry_->frameBytes;
+}
+
+/// Without a sink all frames are kept. What would need too much is refused when it is expected.
+void Rig::provideMemory(const CaptureRequest& request, const ArmAhead& ahead, bool sink) {
+    const int frames = request.frames, next = ahead.next ? ahead.next->frames : 0;
+    const auto held = [&](int n) { return static_cast<std::size_t>(std::min(n, framesHeld())); };
+    const auto kept = [&](int n) { return sink ? held(n) : static_cast<std::size_t>(n); };
+    const Size size = geometry_->window.sent();
+    const std::size_t limit = CaptureFrames::kMaxOpenBytes;
+    assembler_.provide(geometry_->frameBytes,
+                       std::min(held(frames) + held(next), limit / geometry_->frameBytes));
+    pixels_.provide(
+        size, std::min(kept(frames) + kept(next), limit / (size.pixels() * sizeof(std::uint16_t))));
 }
 
 /// Idle, with nothing on its way: not of the last attempt, nor of what was armed ahead.

@@ -92,9 +92,12 @@ public:
     /// capture() of the same request finds it done, or on its way. Any other, and darken(),
     /// configure() and close(), abort it; nothing of it is ever seen. After a request that is not
     /// to be kept lit nothing is armed, nor on a rig that keeps fewer than three frames for RESEND,
-    /// nor what the rig refuses: its own capture() then says why.
+    /// nor where there is no memory for the frames of both, nor what the rig refuses: its own
+    /// capture() then says why.
     /// A `sink` is given each frame as soon as it and those before it are there, in the order of
-    /// their index, so that a capture of many frames needs the memory of few.
+    /// their index, so that a capture of many frames needs the memory of few. All memory is taken
+    /// before anything is armed, for what is armed ahead too; while a sink is busy nothing is read,
+    /// and the rig waits with its next exposure (docs/streaming.md).
     Result<Capture> capture(const CaptureRequest& request,
                             const ArmAhead& ahead = {},
                             const FrameSink& sink = {});
@@ -137,7 +140,14 @@ private:
     Result<void> attempt(const Making& making);
     Result<ArmedCapture> takeUpOrArm(const CaptureRequest& request, int frames);
     Result<void> armAhead(const CaptureRequest& request);
-    Result<ArmedCapture> arm(const CaptureRequest& request, int frames);
+    enum class Turn {
+        Present,
+        Next
+    };
+    Result<ArmedCapture> arm(const CaptureRequest& request, int frames, Turn turn);
+    [[nodiscard]] int framesHeld() const;
+    [[nodiscard]] bool haveMemoryFor(int frames, int next) const;
+    void provideMemory(const CaptureRequest& request, const ArmAhead& ahead, bool sink);
     Result<FramePlan> apply(const CaptureRequest& request);
     Result<void> quiesce();
     Result<void> abort();
@@ -148,6 +158,7 @@ private:
 
     std::unique_ptr<RigLink> link_;  ///< empty after a move
     Assembler assembler_;
+    PixelMemory pixels_;
     std::optional<Geometry> geometry_;
     std::optional<OnItsWay> ahead_;
     CaptureIds ids_;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "driver/udev_rule.h"
 #include "driver/usb_transport.h"
 
 struct libusb_context;
@@ -53,13 +54,13 @@ struct OpenedRig {
                                                      const UsbSelection& wanted);
 /// Opens and reads the strings; claims nothing yet.
 [[nodiscard]] Result<OpenedRig> openRig(const FoundRig& found);
+/// It has the descriptors of a SuperSpeed device, whatever the port gives it.
+[[nodiscard]] bool canSuperSpeed(const OpenedRig& rig);
 /// Takes the stream interface, from a kernel driver too.
 Result<void> claimStream(const OpenedRig& rig);
 
 /// What libusb's code means for a person who tried `what`.
 [[nodiscard]] Error usbError(int code, const std::string& what);
-/// The udev rule that lets a user at this computer use rigs of these ids.
-[[nodiscard]] std::string permissionCure(std::uint16_t vendor, std::uint16_t product);
 /// "1209:0001".
 [[nodiscard]] std::string idText(std::uint16_t vendor, std::uint16_t product);
 

@@ -62,6 +62,18 @@ RigInterfaces interfacesOf(const libusb_config_descriptor& config) {
     return found;
 }
 
+/// Mbit/s; 0: unknown.
+int speedOf(libusb_device* device) {
+    switch (libusb_get_device_speed(device)) {
+        case LIBUSB_SPEED_LOW: return 1;
+        case LIBUSB_SPEED_FULL: return 12;
+        case LIBUSB_SPEED_HIGH: return 480;
+        case LIBUSB_SPEED_SUPER: return 5000;
+        case LIBUSB_SPEED_SUPER_PLUS: return 10000;
+        default: return 0;
+    }
+}
+
 RigInterfaces interfacesOf(libusb_device* device) {
     libusb_config_descriptor* config = nullptr;
     if (libusb_get_active_config_descriptor(device, &config) != 0) return {};
@@ -100,12 +112,6 @@ std::string idText(std::uint16_t vendor, std::uint16_t product) {
     return hex4(vendor) + ":" + hex4(product);
 }
 
-std::string permissionCure(std::uint16_t vendor, std::uint16_t product) {
-    return "put the line SUBSYSTEMS==\"usb\", ATTRS{idVendor}==\"" + hex4(vendor) +
-           "\", ATTRS{idProduct}==\"" + hex4(product) +
-           "\", TAG+=\"uaccess\" into /etc/udev/rules.d/70-gonio.rules and plug the rig in again";
-}
-
 Error usbError(int code, const std::string& what) {
     const std::string seen = what + ": " + libusb_error_name(code);
     switch (code) {
@@ -139,6 +145,7 @@ Result<std::vector<FoundRig>> findRigs(libusb_context* context, const UsbSelecti
         const RigInterfaces interfaces = interfacesOf(device.get());
         if (!interfaces.complete()) continue;
         const std::string place = placeOf(device.get());
+        const int speed = speedOf(device.get());
         const std::string serial = knownSerial(place);
         if (wanted.serial && !serial.empty() && serial != *wanted.serial) continue;
         rigs.push_back({.device = std::move(device),
@@ -148,7 +155,8 @@ Result<std::vector<FoundRig>> findRigs(libusb_context* context, const UsbSelecti
                                 .serial = serial,
                                 .place = place,
                                 .protocol = {},
-                                .obstacle = {}}});
+                                .obstacle = {},
+                                .speed = speed}});
     }
     libusb_free_device_list(list, 0);
     return rigs;
@@ -172,6 +180,17 @@ Result<OpenedRig> openRig(const FoundRig& found) {
                       .serial = stringOf(raw, descriptor.iSerialNumber),
                       .protocol = stringOf(raw, kProtocolString)};
     return opened;
+}
+
+bool canSuperSpeed(const OpenedRig& rig) {
+    libusb_bos_descriptor* bos = nullptr;
+    if (libusb_get_bos_descriptor(rig.handle.get(), &bos) != 0) return false;  // USB 2.0 has none
+    bool can = false;
+    for (int i = 0; i < bos->bNumDeviceCaps; ++i) {
+        can |= bos->dev_capability[i]->bDevCapabilityType == LIBUSB_BT_SS_USB_DEVICE_CAPABILITY;
+    }
+    libusb_free_bos_descriptor(bos);
+    return can;
 }
 
 Result<void> claimStream(const OpenedRig& rig) {

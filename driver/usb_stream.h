@@ -21,6 +21,9 @@ struct libusb_transfer;
 
 namespace gonio::driver {
 
+/// The name of the thread that serves a stream, as `top -H` and a debugger show it.
+inline constexpr const char* kStreamThread = "gonio-stream";
+
 /// What the stream had to cope with since it began.
 struct StreamCounters {
     int stalls = 0;

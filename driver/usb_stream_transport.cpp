@@ -1,4 +1,5 @@
 #include <libusb.h>
+#include <pthread.h>
 
 #include <algorithm>
 #include <memory>
@@ -147,6 +148,7 @@ StreamCounters UsbStream::counters() const {
 // ---- what the stream's own thread does
 
 void UsbStream::serve() {
+    (void)pthread_setname_np(pthread_self(), kStreamThread);
     while (true) {
         handleEvents(100);
         std::unique_lock lock(mutex_);

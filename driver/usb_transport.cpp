@@ -109,6 +109,7 @@ void inspect(const FoundRig& found, UsbRig& rig) {
     }
     if (!opened->strings.serial.empty()) rig.serial = opened->strings.serial;
     rig.protocol = opened->strings.protocol;
+    rig.superSpeed = canSuperSpeed(*opened);
     const auto node = findHid(opened->strings, found.interfaces.hid);
     rig.obstacle = node ? hidObstacle(*node) : "its HID interface has no hidraw node";
 }

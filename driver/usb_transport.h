@@ -27,10 +27,12 @@ struct UsbSelection {
 struct UsbRig {
     std::uint16_t vendor = 0;
     std::uint16_t product = 0;
-    std::string serial;    ///< empty where it cannot be read
-    std::string place;     ///< bus and ports: "1-2.4"
-    std::string protocol;  ///< "GRP/1.0"; empty where it cannot be read
-    std::string obstacle;  ///< why it cannot be opened, and the cure; empty: it can
+    std::string serial;       ///< empty where it cannot be read
+    std::string place;        ///< bus and ports: "1-2.4"
+    std::string protocol;     ///< "GRP/1.0"; empty where it cannot be read
+    std::string obstacle;     ///< why it cannot be opened, and the cure; empty: it can
+    int speed = 0;            ///< of the port as it is connected, Mbit/s; 0: unknown
+    bool superSpeed = false;  ///< it could do 5000 Mbit/s at least
 };
 
 [[nodiscard]] Result<std::vector<UsbRig>> listUsb(const UsbSelection& wanted = {});

@@ -90,10 +90,17 @@ std::vector<std::uint8_t> packPixels(const Image<std::uint16_t>& image, PixelFor
 Image<std::uint16_t> unpackPixels(std::span<const std::uint8_t> bytes,
                                   Size size,
                                   PixelFormat format) {
-    const std::size_t stride = strideOf(format, size.width).value_or(0);
-    assert(bytes.size() == stride * static_cast<std::size_t>(size.height));
     Image<std::uint16_t> image(size);
-    for (int y = 0; y < size.height; ++y) {
+    unpackInto(image, bytes, format);
+    return image;
+}
+
+void unpackInto(Image<std::uint16_t>& image,
+                std::span<const std::uint8_t> bytes,
+                PixelFormat format) {
+    const std::size_t stride = strideOf(format, image.width()).value_or(0);
+    assert(bytes.size() == stride * static_cast<std::size_t>(image.height()));
+    for (int y = 0; y < image.height(); ++y) {
         const std::uint8_t* in = bytes.data() + stride * static_cast<std::size_t>(y);
         if (format == PixelFormat::Mono12Packed) {
             unpackRow12(in, image.row(y));
@@ -101,7 +108,6 @@ Image<std::uint16_t> unpackPixels(std::span<const std::uint8_t> bytes,
             unpackRow16(in, image.row(y));
         }
     }
-    return image;
 }
 
 }  // namespace gonio::driver

@@ -22,5 +22,9 @@ namespace gonio::driver {
 [[nodiscard]] Image<std::uint16_t> unpackPixels(std::span<const std::uint8_t> bytes,
                                                 Size size,
                                                 PixelFormat format);
+/// The same, into the memory of a picture of that size.
+void unpackInto(Image<std::uint16_t>& image,
+                std::span<const std::uint8_t> bytes,
+                PixelFormat format);
 
 }  // namespace gonio::driver

@@ -1,0 +1,108 @@
+// Frames in a stream, in virtual time: what they allocate, and who waits for whom.
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "driver/rig.h"
+#include "sim/in_process.h"
+#include "tests/driver/allocation_watch.h"
+
+namespace gonio {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::uint64_t kSession = 0x1122334455667788;
+constexpr Window kWindow{.x = 512, .y = 384, .size = {256, 256}, .binning = 1};
+
+driver::CaptureRequest dark(std::uint64_t planStep, int frames) {
+    return {.planStep = planStep,
+            .led = std::nullopt,
+            .levels = {},
+            .exposure = Microseconds(320),
+            .frames = frames};
+}
+
+struct Opened {
+    sim::InProcessDoor door{{.errors = {}}};
+    driver::test::WatchedTransport watched{door, false};
+    Result<driver::Rig> rig = driver::Rig::open(watched, kSession);
+
+    Opened() {
+        EXPECT_TRUE(rig) << rig.error().message;
+        EXPECT_TRUE(rig->configure(kWindow));
+    }
+};
+
+/// Allocations between the last ARM of a capture and its last frame.
+template <class Take>
+std::size_t allocated(driver::Rig& rig, const driver::CaptureRequest& request, Take take) {
+    int left = request.frames;
+    std::size_t seen = 0;
+    const auto capture = rig.capture(request, {}, [&](Frame&& frame) -> Result<void> {
+        if (--left == 0) {
+            seen = driver::test::allocationsSeen();
+            driver::test::stopWatching();
+        }
+        take(std::move(frame));
+        return {};
+    });
+    EXPECT_TRUE(capture) << capture.error().message;
+    EXPECT_EQ(left, 0);
+    return seen;
+}
+
+TEST(Streaming, AllocatesNothingAfterArm) {
+    Opened on;
+    EXPECT_EQ(allocated(*on.rig, dark(1, 100), [](const Frame&) {}), 0U);
+    EXPECT_EQ(allocated(*on.rig, dark(2, 100), [](const Frame&) {}), 0U);
+}
+
+TEST(Streaming, AFewFramesThatTheSinkKeepsWereAllocatedBeforeArm) {
+    Opened on;
+    std::vector<Frame> kept;
+    kept.reserve(8);
+    const auto keep = [&](Frame frame) { kept.push_back(std::move(frame)); };
+    EXPECT_EQ(allocated(*on.rig, dark(1, 8), keep), 0U);
+    EXPECT_EQ(kept.size(), 8U);
+}
+
+TEST(Streaming, AnAllocationWouldBeSeen) {
+    Opened on;
+    std::vector<std::vector<int>> kept;
+    const auto grow = [&](const Frame&) { kept.emplace_back(100); };
+    EXPECT_GE(allocated(*on.rig, dark(1, 3), grow), 2U) << "all but the last are in the time";
+}
+
+TEST(Streaming, TheMemoryOfFramesIsUsedAgain) {
+    Opened on;
+    std::vector<const std::uint16_t*> places;
+    const auto note = [&](const Frame& frame) { places.push_back(frame.pixels.pixels().data()); };
+    (void)allocated(*on.rig, dark(1, 60), note);
+    std::sort(places.begin(), places.end());
+    const auto different = std::unique(places.begin(), places.end()) - places.begin();
+    EXPECT_LE(different, 2 * on.rig->link().ident().frameRam + 2);
+}
+
+TEST(Streaming, ASlowReaderHoldsTheRigBackAndLosesNothing) {
+    Opened slow, quick;
+    std::vector<Frame> frames;
+    const auto capture = slow.rig->capture(dark(1, 40), {}, [&](Frame frame) -> Result<void> {
+        frames.push_back(std::move(frame));
+        slow.door.device().advanceTo(slow.door.device().now() + 300ms);  // seven frame periods
+        return slow.rig->keepAlive();
+    });
+    ASSERT_TRUE(capture) << capture.error().message;
+    const auto twin = quick.rig->capture(dark(1, 40));
+    ASSERT_TRUE(twin);
+    ASSERT_EQ(frames.size(), 40U);
+    for (std::size_t i = 0; i < frames.size(); ++i) EXPECT_EQ(frames[i].pixels, (*twin)[i].pixels);
+    EXPECT_EQ(capture->anomalies, driver::Anomalies{});
+    EXPECT_EQ(capture->resends + capture->recaptures, 0);
+    EXPECT_EQ(slow.door.device().stats().fifoOverruns, 0U);
+    EXPECT_EQ(slow.door.device().stats().framesMade, 40U) << "none was exposed twice";
+}
+
+}  // namespace
+}  // namespace gonio
