@@ -18,6 +18,9 @@ Result<DaemonOptions> readDaemonOptions(const std::filesystem::path& file) {
                           .socket = keys.textOr("socket", ""),
                           .profile = keys.textOr("profile", ""),
                           .socketMode = keys.textOr("socket_mode", "")};
+    constexpr double kNotTold = -1;
+    const double comeback = keys.notNegativeOr("comeback_seconds", kNotTold);
+    if (comeback >= 0) options.comebackSeconds = comeback;
     keys.nothingElse();
     if (keys.error()) return *keys.error();
     return options;
@@ -29,6 +32,7 @@ DaemonOptions overlaid(DaemonOptions first, const DaemonOptions& second) {
     if (first.socket.empty()) first.socket = second.socket;
     if (first.profile.empty()) first.profile = second.profile;
     if (first.socketMode.empty()) first.socketMode = second.socketMode;
+    if (!first.comebackSeconds) first.comebackSeconds = second.comebackSeconds;
     return first;
 }
 

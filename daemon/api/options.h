@@ -18,10 +18,12 @@ struct DaemonOptions {
     std::filesystem::path socket;
     std::filesystem::path profile;
     std::string socketMode;  ///< "0600" (default) or "0660"
+    /// How long a job waits for a rig that was lost, or must not light; 600 unless told.
+    std::optional<double> comebackSeconds{};
 };
 
-/// Keys rig, store, socket, socket_mode, profile, all optional. File error that names the file and
-/// the key.
+/// Keys rig, store, socket, socket_mode, profile, comeback_seconds, all optional. File error that
+/// names the file and the key.
 [[nodiscard]] Result<DaemonOptions> readDaemonOptions(const std::filesystem::path& file);
 
 /// Each member of `first`; where that is empty, of `second`.
