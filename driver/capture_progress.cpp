@@ -13,7 +13,12 @@ constexpr int kReasonsKept = 8;
 void CaptureProgress::begin() {
     asked_.assign(frames_.size(), 0);
     hopeless_.assign(frames_.size(), false);
-    failed_ = false;
+    failed_ = interrupted_ = false;
+}
+
+void CaptureProgress::interrupt() {
+    asked_.assign(frames_.size(), 0);
+    interrupted_ = true;
 }
 
 bool CaptureProgress::waitsFor(int frame) const {

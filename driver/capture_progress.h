@@ -41,6 +41,12 @@ public:
     /// From before the settings took effect: to be taken again, though nobody failed.
     void discard(int frame);
     void giveUp(int frame, const std::string& why);
+    /// The link was lost and is there again: what was asked for before does not count.
+    void interrupt();
+    /// Lost with the link: to be taken again, though nobody failed.
+    void redo(int frame) { hopeless_[static_cast<std::size_t>(frame)] = true; }
+    /// In this attempt.
+    [[nodiscard]] bool interrupted() const { return interrupted_; }
     /// Counts a RESEND for `frame`; false when it has had `most` in this attempt.
     [[nodiscard]] bool mayAskAgain(int frame, int most);
 
@@ -65,7 +71,7 @@ private:
     std::size_t delivered_ = 0;   ///< so many of the first
     std::vector<int> asked_;      ///< RESENDs of this attempt, by frame
     std::vector<bool> hopeless_;  ///< of this attempt, by frame
-    bool failed_ = false;
+    bool failed_ = false, interrupted_ = false;
     int reasons_ = 0;
     std::string evidence_;
 };

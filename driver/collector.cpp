@@ -14,6 +14,10 @@ using namespace std::chrono_literals;
 constexpr int kResends = 2;                    // per frame; PROTOCOL.md 3, "Repair"
 constexpr std::uint32_t kCanResend = 1U << 2;  // capability bit
 
+bool isGone(const Error& error) {
+    return error.deviceStatus == status::kFrameGone || error.deviceStatus == status::kBadRange;
+}
+
 }  // namespace
 
 Result<void> Collector::collect(const ArmedCapture& armed,
@@ -82,6 +86,20 @@ Result<void> Collector::repair(const ArmedCapture& armed, CaptureProgress& progr
     return {};
 }
 
+Result<Collector::Held> Collector::askForAll(const ArmedCapture& armed, CaptureProgress& progress) {
+    takeFinished(armed.plan, progress);
+    Held all;
+    for (const MissingChunks& chunks : overdue(armed.expected.frames)) {
+        if (!progress.waitsFor(chunks.frame)) continue;
+        const auto sent = resend(chunks, armed.expected.captureId);
+        if (!sent && !isGone(sent.error())) return sent.error();
+        if (sent) assembler_.askedFor(chunks);
+        if (!sent) progress.redo(chunks.frame);
+        ++(sent ? all.held : all.gone);
+    }
+    return all;
+}
+
 std::vector<MissingChunks> Collector::overdue(int frames) const {
     std::vector<MissingChunks> all;
     for (int i = 0; i < frames; ++i) {
@@ -95,7 +113,7 @@ Result<void> Collector::askAgain(const MissingChunks& chunks,
                                  CaptureProgress& progress) {
     const std::string range =
         "chunks " + std::to_string(chunks.first) + ".." + std::to_string(chunks.last) + " missing";
-    if ((link_.ident().capabilities & kCanResend) == 0) {
+    if (!canResend()) {
         progress.giveUp(chunks.frame, range + ", the rig cannot resend");
         return {};
     }
@@ -103,20 +121,30 @@ Result<void> Collector::askAgain(const MissingChunks& chunks,
         progress.giveUp(chunks.frame, range + " after " + std::to_string(kResends) + " RESENDs");
         return {};
     }
+    const auto sent = resend(chunks, captureId);
+    if (sent) {
+        assembler_.askedFor(chunks);
+        return {};
+    }
+    if (!isGone(sent.error())) return sent;
+    progress.giveUp(
+        chunks.frame,
+        range + ", " + statusName(static_cast<std::uint16_t>(sent.error().deviceStatus)));
+    return {};
+}
+
+Result<void> Collector::resend(const MissingChunks& chunks, std::uint64_t captureId) {
+    if (!canResend()) return Error{ErrorKind::Device, "the rig cannot resend", status::kFrameGone};
     const auto sent = link_.command(Op::Resend,
                                     encode(Resend{.captureId = captureId,
                                                   .frame = static_cast<std::uint16_t>(chunks.frame),
                                                   .firstChunk = chunks.first,
                                                   .lastChunk = chunks.last}));
-    if (sent) {
-        assembler_.askedFor(chunks);
-        return {};
-    }
-    const int code = sent.error().deviceStatus;
-    if (code != status::kFrameGone && code != status::kBadRange) return sent.error();
-    progress.giveUp(chunks.frame, range + ", " + statusName(static_cast<std::uint16_t>(code)));
+    if (!sent) return sent.error();
     return {};
 }
+
+bool Collector::canResend() const { return (link_.ident().capabilities & kCanResend) != 0; }
 
 /// PROTOCOL.md 2: a frame is overdue after settling, exposure, two frame periods and 500 ms. Every
 /// new chunk starts the wait anew; there are finitely many of them.

@@ -36,6 +36,14 @@ public:
                          const std::function<Result<void>()>& exposed,
                          const std::function<Result<void>()>& arrived);
 
+    /// Frames that the rig still holds, and those that it does not.
+    struct Held {
+        int held = 0, gone = 0;
+    };
+    /// After the link was lost and nothing is on its way: asks for all that `progress` waits for.
+    /// What is gone is given up, which is no fault of the rig.
+    Result<Held> askForAll(const ArmedCapture& armed, CaptureProgress& progress);
+
 private:
     void takeFinished(const FramePlan& plan, CaptureProgress& progress);
     void weigh(const WireFrame& wire, const FramePlan& plan, CaptureProgress& progress);
@@ -44,6 +52,8 @@ private:
     Result<void> askAgain(const MissingChunks& chunks,
                           std::uint64_t captureId,
                           CaptureProgress& progress);
+    Result<void> resend(const MissingChunks& chunks, std::uint64_t captureId);
+    [[nodiscard]] bool canResend() const;
     [[nodiscard]] Result<void> notAborted() const;
     [[nodiscard]] Nanoseconds patience(const Exposure& exposure) const;
 

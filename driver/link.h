@@ -3,9 +3,13 @@
 // checks the protocol string and IDENT, reads LIMITS, and claims the rig; destruction releases it,
 // which leaves it dark. Every wait has a deadline on the transport's clock: a silent rig is an
 // error after three sends, never a hang. While it waits for chunks the link feeds the heartbeat; a
-// caller that is busy elsewhere calls keepAlive(). Not for several threads at once. A rig of
-// another major version is refused and both versions are said; one that another session owns is
-// Busy; one that has rebooted since (another boot_id) is a Device error.
+// caller that is busy elsewhere calls keepAlive(). Not for several threads at once. A rig that
+// identity.h refuses is a Device error; one that another session owns is Busy.
+//
+// A rig that is gone, that does not answer three sends, whose reports stay silent, that has
+// rebooted, or whose claim has lapsed is lost: every call repeats why, at once, and the transport
+// is not touched any more. resume() takes the claim up again over another transport of the same
+// rig; events, counters and the clock go on.
 
 #include <cstdint>
 #include <deque>
@@ -13,8 +17,10 @@
 #include <optional>
 #include <vector>
 
+#include "driver/identity.h"
 #include "driver/protocol/reports.h"
 #include "driver/protocol/transport.h"
+#include "driver/watched_transport.h"
 #include "proc/core/result.h"
 
 namespace gonio::driver {
@@ -31,23 +37,34 @@ struct LinkCounters {
     std::uint32_t foreignAcks = 0;     ///< of another session
     std::uint32_t strayAcks = 0;       ///< ours, but not of the command that waits
     std::uint32_t repeats = 0;         ///< commands sent again for want of an ACK
+    std::uint32_t lostStatuses = 0;    ///< gaps in the numbers of STATUS
+    std::uint32_t missedEvents = 0;    ///< gone before they could be read again
     bool operator==(const LinkCounters&) const = default;
 };
 
 class RigLink {
 public:
-    /// `transport` is borrowed and must outlive the link.
+    /// `transport` is borrowed until the link ends or is lost.
     static Result<std::unique_ptr<RigLink>> open(Transport& transport, const LinkOptions& options);
     ~RigLink();
     RigLink(const RigLink&) = delete;
     RigLink& operator=(const RigLink&) = delete;
 
-    [[nodiscard]] const DeviceStrings& strings() const { return strings_; }
-    [[nodiscard]] const Ident& ident() const { return ident_; }
-    [[nodiscard]] const Limits& limits() const { return limits_; }
-    [[nodiscard]] const Clock& clock() const { return transport_->clock(); }
+    [[nodiscard]] const DeviceStrings& strings() const { return identity_.strings; }
+    [[nodiscard]] const Ident& ident() const { return identity_.ident; }
+    [[nodiscard]] const Limits& limits() const { return identity_.limits; }
+    /// Of the transport; it stands still while the rig is lost.
+    [[nodiscard]] const Clock& clock() const { return wire_.clock(); }
     /// The claim was taken up again: settings, ACKs and frames are those of before.
     [[nodiscard]] bool resumed() const { return resumed_; }
+
+    /// Why the rig is lost; empty: it is not.
+    [[nodiscard]] const std::optional<Error>& lost() const { return wire_.lost(); }
+    /// Takes the claim up again, also with another boot id. Another serial number is a Device error
+    /// that names both; after any error the link is lost, and `transport` is not touched any more.
+    Result<void> resume(Transport& transport);
+    /// As if the rig were gone.
+    void abandon(const Error& why) { (void)wire_.lose(why, WatchedTransport::Port::Leave); }
 
     /// Sends one command and waits for its final ACK; its result where the status is OK. Other
     /// statuses are errors that carry it (Busy for NOT_OWNER and BUSY, else Device).
@@ -66,6 +83,8 @@ public:
     /// Events since the last call, oldest first, those lost as reports re-read; the rig keeps 64.
     Result<std::vector<Event>> takeEvents();
     [[nodiscard]] const LinkCounters& counters() const { return counters_; }
+    /// How often silent reports were opened anew.
+    [[nodiscard]] std::uint32_t reopens() const { return wire_.reopens(); }
 
     /// Gives the rig back: dark, aborted, flushed. No command works afterwards.
     Result<void> release();
@@ -73,7 +92,12 @@ public:
 private:
     RigLink(Transport& transport, const LinkOptions& options);
     Result<void> identify();
+    Result<void> takeUp(const DeviceStrings& there);
     Result<void> claim();
+    Result<void> dropInputs();
+    Result<void> readEvents();
+    [[nodiscard]] bool missesEvents() const;
+    void follow(const Status& status);
     Result<SessionState> setSession(bool release);
     Result<std::optional<Ack>> sendOnce(const Command& command);
     Result<std::optional<Ack>> awaitAck(const Command& command, Nanoseconds wait);
@@ -82,20 +106,21 @@ private:
     Result<std::optional<Ack>> handleInput(const Report& report);
     Result<void> listen(Nanoseconds wait);
     void keep(const Event& event);
+    [[nodiscard]] Nanoseconds pingPeriod() const;
     [[nodiscard]] Nanoseconds untilPing() const;
 
-    Transport* transport_;
+    WatchedTransport wire_;
     LinkOptions options_;
-    DeviceStrings strings_;
-    Ident ident_;
-    Limits limits_;
+    Identity identity_;
     bool claimed_ = false;
     bool resumed_ = false;
     std::uint16_t lastCommand_ = 0;
     Nanoseconds fed_{0};  ///< when the last command was sent
     std::optional<Status> status_;
+    std::optional<std::uint16_t> statusSequence_;
     std::deque<Event> events_;
-    std::uint32_t lastEvent_ = 0;  ///< event_seq up to which all are taken or kept
+    std::uint32_t lastEvent_ = 0;    ///< event_seq up to which all are taken or kept
+    std::uint32_t soughtEvent_ = 0;  ///< the newest that STATUS promised when they were last read
     LinkCounters counters_;
 };
 

@@ -57,7 +57,8 @@ Rig::~Rig() { (void)close(); }
 
 Result<void> Rig::close() {
     if (!link_) return {};
-    (void)darken();  // a rig that does not hear this may still hear the release, which darkens too
+    // A rig that does not hear this may still hear the release, which darkens too.
+    (void)putOut();
     geometry_.reset();
     return link_->release();
 }
@@ -93,35 +94,53 @@ Result<void> Rig::configure(const Window& window, PixelFormat format) {
                           fits16(size.height) && window.binning <= 255;
     if (!wanted || !sendable) return usage(what + ": not a window of any sensor");
     geometry_.reset();
-    if (ahead_) {
-        if (auto idle = abort(); !idle) return idle.error().in(what);
-    }
-    const auto granted =
-        link_->command(Op::SetFormat,
-                       encode(SetFormat{.format = format,
-                                        .x = static_cast<std::uint16_t>(window.x),
-                                        .y = static_cast<std::uint16_t>(window.y),
-                                        .width = static_cast<std::uint16_t>(size.width),
-                                        .height = static_cast<std::uint16_t>(size.height),
-                                        .binning = static_cast<std::uint8_t>(window.binning)}));
-    if (!granted) return granted.error().in(what);
-    const std::uint32_t bytes = decodeU32(*granted);
-    if (bytes != *wanted) {
-        return Error{ErrorKind::Device,
-                     what + ": the rig says " + std::to_string(bytes) +
-                         " bytes per frame, this window has " + std::to_string(*wanted)};
-    }
-    geometry_ = Geometry{.window = window, .format = format, .frameBytes = bytes};
+    const Geometry geometry{.window = window, .format = format, .frameBytes = *wanted};
+    const auto set = surviving([&]() -> Result<void> {
+        if (ahead_) {
+            if (auto idle = abort(); !idle) return idle;
+        }
+        return setFormat(geometry);
+    });
+    if (!set) return set.error().in(what);
+    geometry_ = geometry;
+    rebooted_.reset();
     return {};
 }
 
+/// The rig must count as many bytes per frame.
+Result<void> Rig::setFormat(const Geometry& geometry) {
+    const Window& window = geometry.window;
+    const auto granted =
+        link_->command(Op::SetFormat,
+                       encode(SetFormat{.format = geometry.format,
+                                        .x = static_cast<std::uint16_t>(window.x),
+                                        .y = static_cast<std::uint16_t>(window.y),
+                                        .width = static_cast<std::uint16_t>(window.size.width),
+                                        .height = static_cast<std::uint16_t>(window.size.height),
+                                        .binning = static_cast<std::uint8_t>(window.binning)}));
+    if (!granted) return granted.error();
+    const std::uint32_t bytes = decodeU32(*granted);
+    if (bytes == geometry.frameBytes) return {};
+    return Error{ErrorKind::Device,
+                 "the rig says " + std::to_string(bytes) + " bytes per frame, this window has " +
+                     std::to_string(geometry.frameBytes)};
+}
+
 Result<void> Rig::darken() {
+    return surviving([&] { return putOut(); });
+}
+
+Result<void> Rig::putOut() {
     if (ahead_) {
         if (auto idle = abort(); !idle) return idle.error().in("darken");
     }
     const auto dark = link_->command(Op::SetLed, encode(SetLed{}));
     if (!dark) return dark.error().in("darken");
     return {};
+}
+
+Result<void> Rig::keepAlive() {
+    return surviving([&] { return link_->keepAlive(); });
 }
 
 Result<void> Rig::check(const CaptureRequest& request) const {
@@ -171,13 +190,14 @@ Result<Capture> Rig::capture(const CaptureRequest& request,
                              const ArmAhead& ahead,
                              const FrameSink& sink) {
     const std::string what = describe(request);
-    if (auto admitted = admit(request, ahead); !admitted) return admitted.error().in(what);
+    const auto admitted = inOneBoot([&] { return admit(request, ahead); });
+    if (!admitted) return admitted.error().in(what);
     const Anomalies before = anomalies();
     CaptureProgress progress(request.frames, sink ? framesHeld() : 0);
     provideMemory(request, ahead, static_cast<bool>(sink));
     Result<void> done =
         fill({.request = request, .ahead = ahead, .sink = sink, .progress = progress});
-    if (done && !request.keepLit) done = darken();
+    if (done && !request.keepLit) done = inOneBoot([&] { return putOut(); });
     if (!done) {
         (void)abort();  // what cannot be reached any more goes dark by its own heartbeat
         return failed(done.error(), progress, before).in(what);
@@ -208,22 +228,31 @@ Result<void> Rig::fill(const Making& making) {
     while (true) {
         if (auto tried = attempt(making); !tried) return tried;
         if (progress.toArm() == 0) return {};
-        if (!progress.failed()) {
+        if (progress.failed()) {
+            if (progress.recaptures == kRecaptures)
+                return Error{ErrorKind::Device, "frames are missing or not as planned"};
+            ++progress.recaptures;
+        } else if (!progress.interrupted()) {  // else it is the link's doing
             if (++early > link_->ident().controlLatency)
                 return Error{ErrorKind::Device, "settings do not take effect"};
-        } else if (progress.recaptures == kRecaptures) {
-            return Error{ErrorKind::Device, "frames are missing or not as planned"};
-        } else {
-            ++progress.recaptures;
         }
-        if (auto quiet = quiesce(); !quiet) return quiet;
+        if (auto quiet = inOneBoot([&] { return quiesce(); }); !quiet) return quiet;
     }
 }
 
 Result<void> Rig::attempt(const Making& making) {
-    making.progress.begin();
-    const Result<ArmedCapture> armed = takeUpOrArm(making.request, making.progress.toArm());
+    CaptureProgress& progress = making.progress;
+    progress.begin();
+    const auto armed =
+        inOneBoot([&] { return takeUpOrArm(making.request, making.progress.toArm()); });
     if (!armed) return armed.error();
+    bool again = false;
+    return inOneBoot([&] {
+        return std::exchange(again, true) ? collectAgain(*armed, making) : collect(*armed, making);
+    });
+}
+
+Result<void> Rig::collect(const ArmedCapture& armed, const Making& making) {
     const auto exposed = [&]() -> Result<void> {
         const bool overlaps = making.request.keepLit && link_->ident().frameRam >= kFramesToOverlap;
         if (!making.ahead.next || !overlaps) return {};
@@ -233,8 +262,7 @@ Result<void> Rig::attempt(const Making& making) {
     const auto arrived = [&]() -> Result<void> {
         return making.sink ? making.progress.deliver(making.sink, pixels_) : Result<void>();
     };
-    return Collector(*link_, assembler_, pixels_)
-        .collect(*armed, making.progress, exposed, arrived);
+    return Collector(*link_, assembler_, pixels_).collect(armed, making.progress, exposed, arrived);
 }
 
 /// What was armed ahead is this request, or admit() would have aborted it; a later attempt finds

@@ -13,17 +13,27 @@
 // (docs/decisions/0002). Its commands are sent when the last frame before it has been exposed,
 // which the stream says: not the host's clock, so that the same requests always make the same
 // commands. Frames of the two are told apart by capture_id, and each keeps its repairs.
+//
+// A rig that is lost comes back when onLost() has said how (comeback.h), in capture(), configure(),
+// darken() and keepAlive(); else, and when its owner gives up, the call fails and the rig stays
+// lost until the next such call. Of the same boot: frames that the rig still holds are sent again,
+// the others are exposed again, which is no recapture; what was armed ahead is forgotten. Of
+// another boot (it lost its power): the format is set again, and capture() is a Device error that
+// says so, once, the one that was interrupted or the next: what belongs to one bracket must be
+// taken again. configure() begins anew. Another serial number is never taken back.
 
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "driver/assembler.h"
 #include "driver/capture_ids.h"
 #include "driver/capture_progress.h"
 #include "driver/collector.h"
+#include "driver/comeback.h"
 #include "driver/link.h"
 #include "proc/core/frame.h"
 
@@ -78,7 +88,7 @@ struct Capture {
 
 class Rig {
 public:
-    /// `transport` is borrowed and must outlive the rig.
+    /// `transport` is borrowed until the rig ends, or calls its comeback.
     static Result<Rig> open(Transport& transport, const LinkOptions& options);
     static Result<Rig> open(Transport& transport, std::uint64_t sessionId);
     Rig(Rig&&) noexcept = default;
@@ -103,10 +113,17 @@ public:
                             const FrameSink& sink = {});
     /// All LEDs dark.
     Result<void> darken();
-    Result<void> keepAlive() { return link_->keepAlive(); }
+    Result<void> keepAlive();
     Result<Status> status() { return link_->freshStatus(); }
     /// Dark, and given back. Nothing but identify() works afterwards.
     Result<void> close();
+
+    /// Empty: a rig that is lost stays so.
+    void onLost(Comeback comeback) { onLost_ = std::move(comeback); }
+    /// Changes when the rig comes back from a loss of its power.
+    [[nodiscard]] std::uint32_t bootId() const { return link_->ident().bootId; }
+    /// Those since the last call, oldest first.
+    [[nodiscard]] std::vector<Interruption> takeInterruptions();
 
     /// Since the rig was opened.
     [[nodiscard]] const Anomalies& anomalies() const { return assembler_.anomalies(); }
@@ -137,6 +154,15 @@ private:
         CaptureProgress& progress;
     };
     Result<void> fill(const Making& making);
+    Result<void> collect(const ArmedCapture& armed, const Making& making);
+    Result<void> collectAgain(const ArmedCapture& armed, const Making& making);
+    // Of a rig that was lost (rig_comeback.cpp).
+    template <class Work>
+    auto surviving(Work work) -> decltype(work());
+    template <class Work>
+    auto inOneBoot(Work work) -> decltype(work());
+    Result<void> comeBack(const Error& lost);
+    Result<void> takeUp(Transport& transport);
     Result<void> attempt(const Making& making);
     Result<ArmedCapture> takeUpOrArm(const CaptureRequest& request, int frames);
     Result<void> armAhead(const CaptureRequest& request);
@@ -149,6 +175,8 @@ private:
     [[nodiscard]] bool haveMemoryFor(int frames, int next) const;
     void provideMemory(const CaptureRequest& request, const ArmAhead& ahead, bool sink);
     Result<FramePlan> apply(const CaptureRequest& request);
+    Result<void> setFormat(const Geometry& geometry);
+    Result<void> putOut();
     Result<void> quiesce();
     Result<void> abort();
     Result<void> flush();
@@ -162,6 +190,28 @@ private:
     std::optional<Geometry> geometry_;
     std::optional<OnItsWay> ahead_;
     CaptureIds ids_;
+    Comeback onLost_;
+    std::optional<Error> rebooted_;  ///< not told yet
+    std::vector<Interruption> interruptions_;
 };
+
+/// Does `work` again each time the rig comes back from a loss in it.
+template <class Work>
+auto Rig::surviving(Work work) -> decltype(work()) {
+    while (true) {
+        auto done = work();
+        if (done || !onLost_ || !link_ || !link_->lost()) return done;
+        if (auto back = comeBack(*link_->lost()); !back) return back.error();
+    }
+}
+
+/// As above, and another boot is an error.
+template <class Work>
+auto Rig::inOneBoot(Work work) -> decltype(work()) {
+    return surviving([&]() -> decltype(work()) {
+        if (auto told = std::exchange(rebooted_, std::nullopt)) return *told;
+        return work();
+    });
+}
 
 }  // namespace gonio::driver

@@ -7,7 +7,6 @@
 // chunk is dropped; ERROR: one control request decides whether the rig is still there. A third
 // stall or error in ten seconds is a failure, and a failure is final.
 
-#include <array>
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
@@ -15,6 +14,7 @@
 #include <thread>
 #include <vector>
 
+#include "driver/protocol/fault_limit.h"
 #include "driver/usb_find.h"
 
 struct libusb_transfer;
@@ -75,7 +75,6 @@ private:
     void recover(bool stalled);
     void doReset();
     [[nodiscard]] bool stillThere();
-    bool tooOften();
     // With the mutex held:
     void submitIdle();
     void takeBackLent();
@@ -100,7 +99,7 @@ private:
     bool stopping_ = false, finished_ = false, warned_ = false;
     std::optional<Result<void>> resetDone_;
     std::optional<Error> failure_;
-    std::array<std::chrono::steady_clock::time_point, 2> faults_{};  ///< the last two
+    FaultLimit limit_;
 };
 
 }  // namespace gonio::driver

@@ -2,6 +2,7 @@
 #include <pthread.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <utility>
 
@@ -19,7 +20,6 @@ constexpr std::size_t kMostInFlight = std::size_t{2} << 20;  // PROTOCOL.md 3
 constexpr int kFewest = 2;
 constexpr auto kDrainLimit = 500ms;
 constexpr auto kResetLimit = 1s;
-constexpr auto kFaultSpan = 10s;  // PROTOCOL.md 4: three stalls in it are a fault
 constexpr unsigned kProbeMs = 200;
 
 SteadyTime steadyNow() { return std::chrono::steady_clock::now(); }
@@ -227,7 +227,7 @@ void UsbStream::recover(bool stalled) {
     const bool drained = drain();
     const bool there = stalled || stillThere();
     const int cleared = stalled ? libusb_clear_halt(rig_.handle.get(), rig_.interfaces.bulkIn) : 0;
-    const bool again = tooOften();
+    const bool again = limit_.third(steadyNow().time_since_epoch());
     std::unique_lock lock(mutex_);
     ++(stalled ? counters_.stalls : counters_.errors);
     // Those that ended while the others were drained tell nothing new.
@@ -268,13 +268,6 @@ bool UsbStream::stillThere() {
                                    status.data(),
                                    static_cast<std::uint16_t>(status.size()),
                                    kProbeMs) == static_cast<int>(status.size());
-}
-
-bool UsbStream::tooOften() {
-    const SteadyTime now = steadyNow();
-    const bool third = faults_[0] != SteadyTime{} && now - faults_[0] < kFaultSpan;
-    faults_ = {faults_[1], now};
-    return third;
 }
 
 // ---- with the mutex held

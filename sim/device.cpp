@@ -17,8 +17,6 @@ namespace {
 
 constexpr Nanoseconds kReadout = std::chrono::milliseconds(1);
 
-std::uint64_t microseconds(Nanoseconds t) { return static_cast<std::uint64_t>(t.count() / 1000); }
-
 }  // namespace
 
 Device::Device(DeviceConfig config)
@@ -43,6 +41,7 @@ bool Device::mayLight() const {
 void Device::setInterlock(std::uint8_t bits) {
     const bool could = mayLight();
     interlock_ = bits;
+    if (exposing_ && !mayLight()) exposing_->seated = false;
     if (could && !mayLight()) {
         raise(event::kInterlockOpened, bits, exposing_ ? exposing_->number : 0);
         if (current_.led >= 0) {
@@ -52,6 +51,53 @@ void Device::setInterlock(std::uint8_t bits) {
     } else if (!could && mayLight()) {
         raise(event::kInterlockClosed, bits, 0);
     }
+    pushStatus();
+}
+
+std::uint64_t Device::clockUs() const {
+    return static_cast<std::uint64_t>((now_ - bootedAt_).count() / 1000) + clockUs_;
+}
+
+void Device::overheat(bool hot) {
+    constexpr std::uint32_t kSensorIndex = 1;
+    if (hot == hot_) return;
+    hot_ = hot;
+    const auto seen = static_cast<std::uint32_t>(temperatures()[kSensorIndex]);
+    raise(hot ? event::kOverTemp : event::kTemperatureBack, kSensorIndex, seen);
+    if (hot) {
+        abort(status::kOverTemp);
+        fault_ = status::kOverTemp;
+    }
+    pushStatus();
+}
+
+void Device::powerCycle() {
+    abort(0);
+    startClean();
+    frames_ = {};
+    notices_ = {};
+    stats_ = {};
+    fault_ = 0;
+    nextFrame_ = 1;
+    clockUs_ = 0;
+    bootedAt_ = now_;
+    ++config_.bootCount;
+    bootId_ = static_cast<std::uint32_t>(mixed(config_.seed, config_.bootCount));
+    raise(event::kBoot, bootId_, 0);
+}
+
+void Device::sendUnknownChunk() {
+    constexpr auto kUnknown = static_cast<ChunkType>(9);
+    const ChunkHeader header{.type = kUnknown,
+                             .bootId = bootId_,
+                             .captureId = capture_ ? capture_->id : 0,
+                             .timeUs = clockUs()};
+    frames_.add(encodeChunk(header, std::vector<std::uint8_t>(16)));
+}
+
+void Device::tellUnknownEvent() {
+    constexpr std::uint16_t kUnknown = 999;
+    raise(kUnknown, 0, 0);
     pushStatus();
 }
 
@@ -144,7 +190,7 @@ void Device::abort(std::uint16_t reason) {
                                  .bootId = bootId_,
                                  .captureId = capture_->id,
                                  .frameIndex = static_cast<std::uint16_t>(capture_->next),
-                                 .timeUs = microseconds(now_)};
+                                 .timeUs = clockUs()};
         frames_.add(encodeChunk(
             header, encode(Aborted{.reason = reason, .frameNumber = exposing_->number})));
     }
@@ -167,7 +213,12 @@ void Device::beginExposureIfDue() {
     if (frames_.framesWaiting() >= kFrameRam) return;
     applyDueSettings();
     Exposing exposing;
-    exposing.settings = current_;
+    exposing.flaw = flaw_ ? flaw_() : FrameFlaw::None;
+    exposing.pictured = picturedWith(exposing.flaw, current_);
+    exposing.settings = exposing.flaw == FrameFlaw::LateSettings ? exposing.pictured : current_;
+    exposing.seated = mayLight();
+    exposing.clockUs = clockUs_ - static_cast<std::uint64_t>(bootedAt_.count() / 1000);
+    before_ = current_;
     exposing.number = nextFrame_++;
     exposing.settling = std::exchange(unsettled_, false) ? kSettling : Nanoseconds(0);
     exposing.start = std::max({now_, earliestStart_, settledAt_});
@@ -201,7 +252,7 @@ void Device::runPhotometricClock(const Settings& settings, Nanoseconds time) {
 /// With the output that the LED has halfway through. An exposure that was aborted is not on the
 /// photometric clock: when that happens is the host's doing.
 Image<std::uint16_t> Device::exposed(const Exposing& done, const NoiseKey& key) {
-    const Settings& settings = done.settings;
+    const Settings& settings = done.pictured;
     const Nanoseconds exposure = grantedExposure(settings.exposureUs);
     runPhotometricClock(settings, done.settling + exposure / 2);
     const Moment halfway{
@@ -211,23 +262,66 @@ Image<std::uint16_t> Device::exposed(const Exposing& done, const NoiseKey& key) 
     return camera_.expose(settings, halfway, format_, key);
 }
 
+/// What the light and the sensor are really set to.
+Settings Device::picturedWith(FrameFlaw flaw, const Settings& settings) const {
+    Settings pictured = settings;
+    switch (flaw) {
+        case FrameFlaw::Unlit: pictured.darken(); break;
+        case FrameFlaw::LateSettings:
+        case FrameFlaw::HiddenLateSettings: pictured = before_; break;
+        case FrameFlaw::OldExposure: pictured.exposureUs = before_.exposureUs; break;
+        default: break;
+    }
+    return pictured;
+}
+
+Image<std::uint16_t> Device::flawed(FrameFlaw flaw, Image<std::uint16_t> image) {
+    constexpr int kSpot = 8;  // of so many parts of a side
+    switch (flaw) {
+        case FrameFlaw::PreviousAgain:
+            if (picture_.size() == image.size()) return picture_;
+            break;
+        case FrameFlaw::Black: std::fill(image.pixels().begin(), image.pixels().end(), 0); break;
+        case FrameFlaw::Reflex:
+            for (int y = 0; y < (image.size().height + kSpot - 1) / kSpot; ++y) {
+                for (int x = 0; x < (image.size().width + kSpot - 1) / kSpot; ++x)
+                    image.at(x, y) = digits_.fullScale;
+            }
+            break;
+        default: break;
+    }
+    return image;
+}
+
+void Device::tellDrift(const Settings& settings) {
+    const auto current = currents(settings.levels);
+    for (unsigned c = 0; c < 3; ++c) {
+        if (settings.levels[c] == 0) continue;
+        raise(event::kLedDrift,
+              static_cast<std::uint32_t>(settings.led) << 8 | c,
+              current[c] + current[c] / unsigned{kDriftedPart});
+    }
+}
+
 void Device::queueFrame(const Exposing& done, int index) {
     const NoiseKey key{.seed = config_.seed,
                        .planStep = capture_->id >> 16,
                        .frameIndex = static_cast<std::uint64_t>(index)};
-    const Image<std::uint16_t> image = exposed(done, key);
+    Image<std::uint16_t> image = flawed(done.flaw, exposed(done, key));
+    if (done.flaw == FrameFlaw::LedDrift && done.settings.led >= 0) tellDrift(done.settings);
     const std::vector<std::uint8_t> bytes = packPixels(image, format_.format);
-    Trailer trailer = trailerOf(done, image, digits_, mayLight());
+    Trailer trailer = trailerOf(done, image, digits_);
     trailer.frameBytes = static_cast<std::uint32_t>(bytes.size());
     trailer.frameCrc = crc32c(bytes);
     const ChunkHeader header{.bootId = bootId_,
                              .captureId = capture_->id,
                              .frameIndex = static_cast<std::uint16_t>(index),
-                             .timeUs = microseconds(now_)};
+                             .timeUs = clockUs()};
     const Leader leader = leaderOf(done, format_, image.size(), digits_, temperatures());
     frames_.add({.capture = capture_->id,
                  .index = index,
                  .chunks = frameChunks(header, leader, bytes, trailer)});
+    picture_ = std::move(image);
 }
 
 // ---- time

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -16,6 +17,7 @@
 #include "sim/camera_kind.h"
 #include "sim/claim.h"
 #include "sim/exposing.h"
+#include "sim/frame_flaw.h"
 #include "sim/frame_queue.h"
 #include "sim/led_drift.h"
 #include "sim/notices.h"
@@ -62,6 +64,18 @@ public:
     void place(Placement placement);
     void setInterlock(std::uint8_t bits);
     [[nodiscard]] const driver::Stats& stats() const { return stats_; }
+    /// What is wrong with the exposure that begins; empty: nothing ever is.
+    void flawFrames(std::function<FrameFlaw()> flaw) { flaw_ = std::move(flaw); }
+    /// The sensor leaves its range of temperature, or comes back.
+    void overheat(bool hot);
+    /// Its clock runs on from `ahead` microseconds past where it was, modulo 2^64.
+    void jumpClock(std::uint64_t aheadUs) { clockUs_ += aheadUs; }
+    [[nodiscard]] std::uint64_t clockUs() const;
+    /// Power was lost and is back: another boot, with nothing left of the one before.
+    void powerCycle();
+    /// Sends a chunk of a type, or tells an event of a code, that no host knows.
+    void sendUnknownChunk();
+    void tellUnknownEvent();
     /// An LED shines at this moment.
     [[nodiscard]] bool lit() const { return current_.led >= 0; }
 
@@ -111,6 +125,9 @@ private:
     void finishExposure();
     void queueFrame(const Exposing& exposing, int index);
     void runPhotometricClock(const Settings& settings, Nanoseconds time);
+    [[nodiscard]] Settings picturedWith(FrameFlaw flaw, const Settings& settings) const;
+    [[nodiscard]] Image<std::uint16_t> flawed(FrameFlaw flaw, Image<std::uint16_t> image);
+    void tellDrift(const Settings& settings);
     [[nodiscard]] Image<std::uint16_t> exposed(const Exposing& done, const NoiseKey& key);
     void abort(std::uint16_t reason);
     void goDark();
@@ -124,7 +141,10 @@ private:
     Nanoseconds sincePlaced_{0};  // on the photometric clock
 
     Nanoseconds now_{0};
+    Nanoseconds bootedAt_{0};
+    std::uint64_t clockUs_ = 0;  ///< that its clock has jumped
     std::uint32_t bootId_;
+    bool hot_ = false;
     std::uint8_t interlock_ = driver::interlock::kMayLight;
     std::uint16_t fault_ = 0;
     Claim claim_;
@@ -140,6 +160,10 @@ private:
     Nanoseconds settledAt_{0};
     bool unsettled_ = false;  // the lit LED has not settled before an exposure yet
     Nanoseconds earliestStart_{0};
+
+    std::function<FrameFlaw()> flaw_;
+    Settings before_;               ///< of the exposure before
+    Image<std::uint16_t> picture_;  ///< the last one
 
     FrameQueue frames_;
     Notices notices_;

@@ -11,12 +11,6 @@ namespace gonio::sim {
 
 using namespace driver;  // the wire's words
 
-namespace {
-
-std::uint64_t microseconds(Nanoseconds t) { return static_cast<std::uint64_t>(t.count() / 1000); }
-
-}  // namespace
-
 void Device::output(const Report& report) {
     const Result<Command> command = decodeCommand(report);
     if (!command) {
@@ -44,7 +38,7 @@ Ack Device::carryOut(const Command& command) {
     Ack ack{.sequence = command.sequence, .op = command.op, .sessionLow = command.sessionLow};
     const Arguments& arguments = command.arguments;
     switch (command.op) {
-        case Op::Ping: ack.result = encodeU64(microseconds(now_)); break;
+        case Op::Ping: ack.result = encodeU64(clockUs()); break;
         case Op::SetLed: ack.status = setLed(decodeSetLed(arguments), ack.result); break;
         case Op::SetExposure:
             ack.status = setExposure(decodeSetExposure(arguments), ack.result);
@@ -58,7 +52,7 @@ Ack Device::carryOut(const Command& command) {
             frames_.flush();
             ack.result = encodeU32(frames_.nextSequence());
             break;
-        case Op::SyncTime: ack.result = encodeU64(microseconds(now_)); break;
+        case Op::SyncTime: ack.result = encodeU64(clockUs()); break;
         case Op::ClearFault: ack.status = clearFault(); break;
         case Op::Reboot: reboot(); break;
         default: ack.status = status::kUnsupported; break;
@@ -68,17 +62,12 @@ Ack Device::carryOut(const Command& command) {
 
 std::uint16_t Device::clearFault() {
     if (fault_ == status::kInterlock && !mayLight()) return fault_;
+    if (fault_ == status::kOverTemp && hot_) return fault_;
     fault_ = 0;
     return status::kOk;
 }
 
-void Device::reboot() {
-    abort(0);
-    startClean();
-    ++config_.bootCount;
-    bootId_ = static_cast<std::uint32_t>(mixed(config_.seed, config_.bootCount));
-    raise(event::kBoot, bootId_, 0);
-}
+void Device::reboot() { powerCycle(); }
 
 /// What the settings will be when all that waits is in effect.
 Settings Device::settingsToCome() const { return due_.empty() ? current_ : due_.back().second; }

@@ -13,9 +13,8 @@ using namespace driver;  // the wire's words
 
 namespace {
 
+constexpr std::int16_t kTooHot = 8500;  // 0.01 degC: past LIMITS' sensor_temperature
 constexpr Nanoseconds kStatusPeriod = std::chrono::milliseconds(100);
-
-std::uint64_t microseconds(Nanoseconds t) { return static_cast<std::uint64_t>(t.count() / 1000); }
 
 /// The levels at which all bands are as bright as the dimmest.
 std::array<std::uint16_t, 3> whiteBalance() {
@@ -67,7 +66,7 @@ Limits Device::limits() const {
     v.binnings = 0b111;
     v.roiStep = kRoiStep;
     v.maxFrames = kMaxFrames;
-    v.framePeriodUs = static_cast<std::uint32_t>(microseconds(link().framePeriod));
+    v.framePeriodUs = static_cast<std::uint32_t>(link().framePeriod.count() / 1000);
     v.blackLevel = digits_.blackLevel;
     v.fullScale = digits_.fullScale;
     v.ledFull = kFullCurrent;
@@ -81,7 +80,7 @@ Limits Device::limits() const {
 Temperatures Device::temperatures() const {
     const double board = 26 + drift_.boardKelvin();
     return {static_cast<std::int16_t>(std::lround(100 * board)),
-            static_cast<std::int16_t>(std::lround(100 * config_.rig.celsius)),
+            hot_ ? kTooHot : static_cast<std::int16_t>(std::lround(100 * config_.rig.celsius)),
             2500,
             2300};
 }
@@ -90,7 +89,7 @@ Status Device::status() const {
     Status v;
     v.sequence = nextStatusSequence_;
     v.bootId = bootId_;
-    v.timeUs = microseconds(now_);
+    v.timeUs = clockUs();
     v.state = state();
     v.interlock = interlock_;
     if (current_.led >= 0) {
@@ -112,7 +111,7 @@ Status Device::status() const {
 }
 
 void Device::raise(std::uint16_t code, std::uint32_t arg0, std::uint32_t arg1) {
-    notices_.raise({.code = code, .arg0 = arg0, .arg1 = arg1}, now_);
+    notices_.raise({.code = code, .arg0 = arg0, .arg1 = arg1}, clockUs());
 }
 
 void Device::pushStatus() {
@@ -128,7 +127,7 @@ std::optional<Report> Device::getFeature(std::uint8_t id) {
         case ReportId::LastAck: return encode(claim_.newest(), ReportId::LastAck);
         case ReportId::Events: return encode(notices_.page());
         case ReportId::Stats:
-            stats_.uptimeS = static_cast<std::uint32_t>(now_.count() / 1'000'000'000);
+            stats_.uptimeS = static_cast<std::uint32_t>((now_ - bootedAt_).count() / 1'000'000'000);
             return encode(stats_);
         case ReportId::Limits: return encode(limits());
         case ReportId::Status: return encode(status());

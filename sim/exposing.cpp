@@ -54,21 +54,23 @@ Leader leaderOf(const Exposing& done,
     leader.y = static_cast<std::uint16_t>(format.view.y);
     leader.binning = static_cast<std::uint8_t>(format.binning);
     leader.frameBytes = leader.stride * static_cast<std::uint32_t>(sent.height);
-    leader.exposureStartUs = microseconds(done.start);
+    leader.exposureStartUs = microseconds(done.start) + done.clockUs;
     leader.frameNumber = done.number;
     return leader;
 }
 
-Trailer trailerOf(const Exposing& done,
-                  const Image<std::uint16_t>& image,
-                  const Digits& digits,
-                  bool seated) {
+Trailer trailerOf(const Exposing& done, const Image<std::uint16_t>& image, const Digits& digits) {
     Trailer trailer;
-    trailer.exposureEndUs = microseconds(done.end);
+    trailer.exposureEndUs = microseconds(done.end) + done.clockUs;
     if (done.settings.led >= 0) {
         trailer.currentMin = trailer.currentMax = currents(done.settings.levels);
     }
-    trailer.validity = seated ? validity::kAll : validity::kCurrent | validity::kTemperature;
+    trailer.validity = done.seated ? validity::kAll : validity::kCurrent | validity::kTemperature;
+    if (done.flaw == FrameFlaw::LedDrift && done.settings.led >= 0) {
+        for (std::uint16_t& current : trailer.currentMax)
+            current = static_cast<std::uint16_t>(current + current / kDriftedPart);
+        trailer.validity &= static_cast<std::uint16_t>(~validity::kCurrent);
+    }
     trailer.saturatedPixels = static_cast<std::uint32_t>(
         std::count(image.pixels().begin(), image.pixels().end(), digits.fullScale));
     return trailer;

@@ -8,6 +8,7 @@
 #include "driver/protocol/chunk.h"
 #include "proc/core/image.h"
 #include "proc/core/units.h"
+#include "sim/frame_flaw.h"
 #include "sim/sensor.h"
 
 namespace gonio::sim {
@@ -34,8 +35,12 @@ struct Format {
 struct Exposing {
     std::uint32_t number = 0;
     Settings settings;
+    Settings pictured;  ///< with which it is really taken: others only where the frame is flawed
+    FrameFlaw flaw = FrameFlaw::None;
+    bool seated = true;       ///< the interlock has stayed closed
     Nanoseconds settling{0};  ///< for the LED that was changed before it
     Nanoseconds start{0}, end{0};
+    std::uint64_t clockUs = 0;  ///< what the rig's clock is ahead of its time
 };
 
 /// LED board, sensor, body, ambient: 0.01 degC.
@@ -49,10 +54,9 @@ using Temperatures = std::array<std::int16_t, 4>;
                                       Size sent,
                                       const Digits& digits,
                                       const Temperatures& temperatures);
-/// All but the bytes' count and CRC. `seated`: the interlock stayed closed.
+/// All but the bytes' count and CRC.
 [[nodiscard]] driver::Trailer trailerOf(const Exposing& done,
                                         const Image<std::uint16_t>& image,
-                                        const Digits& digits,
-                                        bool seated);
+                                        const Digits& digits);
 
 }  // namespace gonio::sim

@@ -1,83 +1,226 @@
 #include "sim/in_process.h"
 
 #include <algorithm>
+#include <string>
 #include <utility>
+
+#include "sim/frame_chunks.h"
 
 namespace gonio::sim {
 namespace {
 
-constexpr Nanoseconds kControlTime = std::chrono::microseconds(200);
+using namespace std::chrono_literals;
 
-Error stalled(int id) {
-    return {ErrorKind::Device, "feature report " + std::to_string(id) + ": the device stalled"};
+constexpr Nanoseconds kControlTime = 200us;
+constexpr Nanoseconds kRequestLimit = 1s;  // as driver/hid_channel.h
+constexpr Nanoseconds kResetTime = 100ms;  // of a port
+constexpr int kFewestTransfers = 2;
+
+// Requests: USB 2.0, chapter 9, and HID 1.11.
+constexpr UsbSetup kGetStatus{.requestType = 0x80, .request = 0, .length = 2};
+constexpr UsbSetup kClearHalt{.requestType = 0x02, .request = 1, .index = usb::kBulkIn};
+constexpr UsbSetup kFlush{.requestType = 0x01, .request = 11, .index = UsbDevice::kStreamInterface};
+
+UsbSetup featureRequest(bool get, std::uint8_t id) {
+    constexpr std::uint16_t kFeature = 3 << 8;
+    return {.requestType = static_cast<std::uint8_t>(get ? 0xA1 : 0x21),
+            .request = static_cast<std::uint8_t>(get ? 1 : 9),
+            .value = static_cast<std::uint16_t>(kFeature | id),
+            .index = UsbDevice::kHidInterface,
+            .length = driver::kReportBytes};
 }
 
-/// Takes from the device, letting its time run up to `wait`.
-template <class Take>
-auto waitFor(Device& device, Nanoseconds wait, Take take) {
-    const Nanoseconds deadline = device.now() + wait;
-    while (true) {
-        auto item = take();
-        if (item || device.now() >= deadline) return item;
-        // At least one step, so that an event at this very moment is passed.
-        const Nanoseconds next = std::max(device.nextEvent(), device.now() + Nanoseconds(1));
-        device.advanceTo(std::min(next, deadline));
-    }
+std::string feature(int id) { return "feature report " + std::to_string(id); }
+
+/// A chunk rounded up to packets, and one packet: what ends it never stands alone.
+std::size_t transferBytes(std::size_t packet) {
+    const std::size_t chunk = driver::kChunkHeaderBytes + kMaxChunkPayload;
+    return ((chunk + packet - 1) / packet + 1) * packet;
 }
 
 }  // namespace
 
-driver::DeviceStrings InProcessDoor::strings() const {
-    return {.vendor = 0x1209, .product = 0x0001, .serial = device_.serial(), .protocol = "GRP/1.0"};
+InProcessDoor::InProcessDoor(DeviceConfig config)
+    : InProcessDoor(std::make_shared<FaultyUsb>(std::move(config)), 0) {}
+
+InProcessDoor::InProcessDoor(std::shared_ptr<FaultyUsb> usb, int pulls)
+    : usb_(std::move(usb)), pulls_(pulls) {
+    constexpr std::uint8_t kSerialString = 3, kProtocolString = 240;
+    usb_->reportsOpened();
+    strings_ = {.vendor = usb_->ids().vendor,
+                .product = usb_->ids().product,
+                .serial = stringOf(kSerialString),
+                .protocol = stringOf(kProtocolString)};
 }
 
-Result<void> InProcessDoor::write(const driver::Report& report) {
+Result<std::unique_ptr<InProcessDoor>> InProcessDoor::openAgain() const {
+    if (!usb_->plugged()) return Error{ErrorKind::NoRig, "no rig is plugged in"};
+    return std::unique_ptr<InProcessDoor>(new InProcessDoor(usb_, usb_->pulls()));
+}
+
+std::string InProcessDoor::stringOf(std::uint8_t index) {
+    constexpr std::uint16_t kStringType = 3 << 8;
+    const UsbReply reply = usb_->control({.requestType = 0x80,
+                                          .request = 6,
+                                          .value = static_cast<std::uint16_t>(kStringType | index),
+                                          .length = 255});
+    std::string text;
+    for (std::size_t i = 2; i + 1 < reply.data.size(); i += 2)
+        text += static_cast<char>(reply.data[i]);
+    return text;
+}
+
+// ---- time and failure
+
+bool InProcessDoor::pass(Nanoseconds deadline) {
+    if (now() >= deadline) return false;
+    // At least one step, so that an event at this very moment is passed.
+    const Nanoseconds next = std::max(usb_->nextEvent(), now() + 1ns);
+    usb_->advanceTo(std::min(next, deadline));
+    return true;
+}
+
+Error InProcessDoor::fail(const std::string& what) {
+    if (!failure_) failure_ = Error{ErrorKind::Device, "rig " + strings_.serial + " " + what};
+    return *failure_;
+}
+
+Result<void> InProcessDoor::there() {
+    if (failure_) return *failure_;
+    if (usb_->pulls() == pulls_) return {};
+    return fail("is gone; check its cable and power");
+}
+
+template <class Ask>
+Result<UsbReply> InProcessDoor::request(const std::string& what, Ask ask) {
     spend(kControlTime);
-    device_.output(report);
+    const Nanoseconds deadline = now() + kRequestLimit;
+    while (true) {
+        if (auto is = there(); !is) return is.error();
+        UsbReply reply = ask();
+        if (reply.answer == UsbAnswer::Stall)
+            return Error{ErrorKind::Device, what + ": the device stalled"};
+        if (reply.answer == UsbAnswer::Done) return reply;
+        if (reply.answer == UsbAnswer::Gone) continue;  // there() says so
+        if (!pass(deadline)) return fail("does not answer; check its cable and power");
+    }
+}
+
+// ---- reports
+
+Result<void> InProcessDoor::write(const driver::Report& report) {
+    const auto done = request("command", [&] { return usb_->interruptOut(report); });
+    if (!done) return done.error();
     return {};
 }
 
 Result<void> InProcessDoor::setFeature(const driver::Report& report) {
-    spend(kControlTime);
-    if (!device_.setFeature(report)) return stalled(report[0]);
+    const auto done = request(feature(report[0]), [&] {
+        return usb_->control(featureRequest(false, report[0]), report);
+    });
+    if (!done) return done.error();
     return {};
 }
 
 Result<driver::Report> InProcessDoor::getFeature(std::uint8_t id) {
-    spend(kControlTime);
-    if (auto report = device_.getFeature(id)) return *report;
-    return stalled(id);
+    const auto reply =
+        request(feature(id), [&] { return usb_->control(featureRequest(true, id)); });
+    if (!reply) return reply.error();
+    driver::Report report{};
+    if (reply->data.size() != report.size()) {
+        return Error{ErrorKind::Device,
+                     feature(id) + ": " + std::to_string(reply->data.size()) + " bytes, wanted " +
+                         std::to_string(report.size())};
+    }
+    std::copy(reply->data.begin(), reply->data.end(), report.begin());
+    return report;
 }
 
 Result<std::optional<driver::Report>> InProcessDoor::readInput(Nanoseconds wait) {
-    return waitFor(device_, wait, [this] { return device_.takeInput(); });
-}
-
-Result<std::optional<driver::BulkBytes>> InProcessDoor::readBulk(Nanoseconds wait) {
-    auto chunk = waitFor(device_, wait, [this] { return device_.takeBulk(); });
-    if (!chunk) return std::optional<driver::BulkBytes>{};
-    lent_ = std::move(*chunk);
-    const double cost = device_.link().nanosecondsPerByte * static_cast<double>(lent_.size());
-    spend(Nanoseconds(static_cast<std::int64_t>(cost)));
-    return std::optional<driver::BulkBytes>(lent_);
-}
-
-Result<void> InProcessDoor::resetStream() {
-    spend(kControlTime);
-    device_.resetStream();
-    return {};
+    const Nanoseconds deadline = now() + wait;
+    do {
+        if (auto is = there(); !is) return is.error();
+        const UsbReply reply = usb_->interruptIn();
+        if (reply.answer != UsbAnswer::Done) continue;
+        driver::Report report{};
+        std::copy_n(reply.data.begin(), std::min(report.size(), reply.data.size()), report.begin());
+        return std::optional(report);
+    } while (pass(deadline));
+    return std::optional<driver::Report>{};
 }
 
 Result<void> InProcessDoor::reopenReports() {
     spend(kControlTime);
-    while (device_.takeInput()) {
+    if (auto is = there(); !is) return is;
+    usb_->reportsOpened();
+    while (usb_->interruptIn().answer == UsbAnswer::Done) {
     }
     return {};
 }
 
+// ---- the stream
+
+Result<std::optional<driver::BulkBytes>> InProcessDoor::readBulk(Nanoseconds wait) {
+    const Nanoseconds deadline = now() + wait;
+    const std::size_t room = transferBytes(usb_->bulkPacket());
+    do {
+        if (failure_) return *failure_;
+        if (auto fits = fitRing(); !fits) return fits.error();
+        UsbReply reply = usb_->bulkIn(room);
+        if (reply.answer == UsbAnswer::Done) {
+            lent_ = std::move(reply.data);
+            const double cost =
+                device().link().nanosecondsPerByte * static_cast<double>(lent_.size());
+            spend(Nanoseconds(static_cast<std::int64_t>(cost)));
+            return std::optional<driver::BulkBytes>(lent_);
+        }
+        if (reply.answer == UsbAnswer::Nak) {
+            if (auto is = there(); !is) return is.error();
+        } else if (auto goesOn = recover(reply.answer); !goesOn) {
+            return goesOn.error();
+        }
+    } while (pass(deadline));
+    return std::optional<driver::BulkBytes>{};
+}
+
+/// PROTOCOL.md 4: a stall is cleared; after an error one control request decides.
+Result<void> InProcessDoor::recover(UsbAnswer answer) {
+    if (answer == UsbAnswer::Overflow) {
+        ++counters_.overflows;
+        return {};
+    }
+    const bool stalled = answer == UsbAnswer::Stall;
+    const auto decided = request(stalled ? "clear halt" : "probe",
+                                 [&] { return usb_->control(stalled ? kClearHalt : kGetStatus); });
+    if (!decided) return decided.error();
+    ++(stalled ? counters_.stalls : counters_.errors);
+    if (limit_.third(now())) return fail("failed three times in 10 s in its stream");
+    return {};
+}
+
+/// No memory for as many transfers: half of them, two at least.
+Result<void> InProcessDoor::fitRing() {
+    const int most = usb_->mostTransfers();
+    if (most == 0) return fail("gets no memory for USB transfers: raise usbfs_memory_mb");
+    while (counters_.ring > std::max(most, kFewestTransfers))
+        counters_.ring = std::max(kFewestTransfers, counters_.ring / 2);
+    return {};
+}
+
+Result<void> InProcessDoor::resetStream() {
+    const auto done = request("flush", [&] { return usb_->control(kFlush); });
+    if (!done) return done.error();
+    return {};
+}
+
 Result<void> InProcessDoor::resetPort() {
-    spend(kControlTime);
-    device_.linkLost();
+    spend(kResetTime);
+    if (usb_->pulls() != pulls_) return there();
+    usb_->resetPort();
+    usb_->reportsOpened();
+    failure_.reset();
+    const auto answers = request("port reset", [&] { return usb_->control(kGetStatus); });
+    if (!answers) return answers.error();
     return {};
 }
 

@@ -26,7 +26,7 @@ LiveRig::~LiveRig() {
     pump_.join();
 }
 
-void LiveRig::advance() { usb_.device().advanceTo(realNow() - boot_ + skipped_); }
+void LiveRig::advance() { usb_.advanceTo(realNow() - boot_ + skipped_); }
 
 void LiveRig::listen(Sink sink) {
     const std::scoped_lock lock(mutex_);

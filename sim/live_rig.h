@@ -1,7 +1,8 @@
 #pragma once
 // A simulated rig in real time: its clock is the computer's, counted from when it was made. Each
 // request finds it where it would be now; between requests a thread of its own lets time pass and
-// hands on the input reports. What it can do wrong on purpose is in Faults.
+// hands on the input reports. What it does wrong is its fault script's (FaultyUsb::play), or what a
+// test sets by hand in Faults.
 
 #include <atomic>
 #include <chrono>
@@ -12,7 +13,7 @@
 #include <utility>
 
 #include "proc/core/frame.h"
-#include "sim/usb_device.h"
+#include "sim/faults/faulty_usb.h"
 
 namespace gonio::sim {
 
@@ -41,7 +42,7 @@ public:
     auto with(Use use) {
         const std::scoped_lock lock(mutex_);
         advance();
-        if constexpr (std::is_void_v<std::invoke_result_t<Use&, UsbDevice&>>) {
+        if constexpr (std::is_void_v<std::invoke_result_t<Use&, FaultyUsb&>>) {
             use(usb_);
             handOn();
         } else {
@@ -63,7 +64,7 @@ private:
     void advance();
     void handOn();
 
-    UsbDevice usb_;
+    FaultyUsb usb_;
     std::mutex mutex_;
     Sink sink_;
     Nanoseconds boot_;

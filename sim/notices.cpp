@@ -12,9 +12,9 @@ constexpr std::size_t kEventsPerPage = 2;
 
 }  // namespace
 
-void Notices::raise(const Happening& happening, Nanoseconds now) {
+void Notices::raise(const Happening& happening, std::uint64_t timeUs) {
     events_.push_back({.sequence = nextEvent_++,
-                       .timeUs = static_cast<std::uint64_t>(now.count() / 1000),
+                       .timeUs = timeUs,
                        .code = happening.code,
                        .arg0 = happening.arg0,
                        .arg1 = happening.arg1});

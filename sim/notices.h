@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "driver/protocol/reports.h"
-#include "proc/core/units.h"
 
 namespace gonio::sim {
 
@@ -19,7 +18,7 @@ public:
         std::uint16_t code = 0;
         std::uint32_t arg0 = 0, arg1 = 0;
     };
-    void raise(const Happening& happening, Nanoseconds now);
+    void raise(const Happening& happening, std::uint64_t timeUs);
     void answer(const driver::Ack& ack) { inputs_.push_back(encode(ack)); }
     void tell(const driver::Status& status);
     [[nodiscard]] std::optional<driver::Report> take();

@@ -161,11 +161,15 @@ UsbReply UsbDevice::interruptOut(std::span<const std::uint8_t> report) {
 UsbReply UsbDevice::bulkIn(std::size_t length) {
     if (halted_) return stall();
     if (sent_ == sending_.size() && !open_) {
-        auto chunk = device_.takeBulk();
+        auto chunk = source_ ? source_() : device_.takeBulk();
         if (!chunk) return {.answer = UsbAnswer::Nak, .data = {}};
         sending_ = std::move(*chunk);
         sent_ = 0;
         open_ = true;
+    }
+    if (sent_ == 0 && sending_.size() < length) {
+        open_ = false;
+        return {.answer = UsbAnswer::Done, .data = std::exchange(sending_, {})};
     }
     const std::size_t part = std::min(length, sending_.size() - sent_);
     const auto begin = sending_.begin() + static_cast<std::ptrdiff_t>(sent_);

@@ -6,8 +6,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "sim/device.h"
@@ -24,10 +26,15 @@ struct UsbSetup {
     std::uint16_t length = 0;
 };
 
+/// What a transfer ends with. A rig gives the first three; the bus can give them all.
 enum class UsbAnswer {
     Done,
     Nak,  ///< nothing yet: ask again
-    Stall
+    Stall,
+    Error,     ///< of the bus: EPROTO
+    Overflow,  ///< more came than there was room for
+    Gone,      ///< ENODEV
+    NoMemory   ///< the system has none for the transfer
 };
 
 struct UsbReply {
@@ -41,9 +48,16 @@ public:
     static constexpr std::uint8_t kStreamInterface = usb::kStreamInterface;
     static constexpr std::uint8_t kBulkIn = usb::kBulkIn;
 
+    using ChunkSource = std::function<std::optional<std::vector<std::uint8_t>>()>;
+
     explicit UsbDevice(DeviceConfig config, UsbIds ids = {});
+    /// Chunks come from here and no longer from the device itself.
+    void takeChunksFrom(ChunkSource source) { source_ = std::move(source); }
 
     [[nodiscard]] Device& device() { return device_; }
+    [[nodiscard]] const Device& device() const { return device_; }
+    /// A chunk is on its way, not all of it sent.
+    [[nodiscard]] bool midChunk() const { return open_ || sent_ < sending_.size(); }
     [[nodiscard]] const UsbIds& ids() const { return ids_; }
     [[nodiscard]] std::vector<std::uint8_t> deviceDescriptor() const;
     [[nodiscard]] std::vector<std::uint8_t> configDescriptor() const;
@@ -71,6 +85,7 @@ private:
     bool takeReport(std::span<const std::uint8_t> report);
     void dropHalfSent();
 
+    ChunkSource source_;
     CameraKind kind_;
     Device device_;
     UsbIds ids_;

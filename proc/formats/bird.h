@@ -26,7 +26,7 @@ namespace gonio::proc {
 [[nodiscard]] Result<FileRead<BrdfRows>> parseBird(std::string_view text, std::string_view name);
 
 /// Angles in degrees, rounded to 1e-9. Left out and counted: missing values, and theta of 90
-/// degrees and more.
-[[nodiscard]] Written writeBird(const BrdfRows& rows, const Metadata& about);
+/// degrees and more. Usage error where nothing is left: such a file is none to its own reader.
+[[nodiscard]] Result<Written> writeBird(const BrdfRows& rows, const Metadata& about);
 
 }  // namespace gonio::proc

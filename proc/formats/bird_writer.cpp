@@ -48,8 +48,11 @@ class Writer {
 public:
     Writer(const BrdfRows& rows, const Metadata& about) : rows_(rows), about_(about) {}
 
-    Written write() {
+    Result<Written> write() {
         select();
+        if (entries_ == 0) {
+            return Error{ErrorKind::Usage, "bird: no value at thetas below 90 degrees"};
+        }
         std::string& text = written_.bytes;
         constexpr std::size_t kUsualEntry = 130;
         text.reserve(2000 + entries_ * kUsualEntry);
@@ -275,7 +278,7 @@ private:
 
 }  // namespace
 
-Written writeBird(const BrdfRows& rows, const Metadata& about) {
+Result<Written> writeBird(const BrdfRows& rows, const Metadata& about) {
     return Writer(rows, about).write();
 }
 

@@ -33,7 +33,7 @@ BrdfRows manyRows() {
 }
 
 const std::string& manyText() {
-    static const std::string text = writeBird(manyRows(), {}).bytes;
+    static const std::string text = writeBird(manyRows(), {})->bytes;
     return text;
 }
 
@@ -50,7 +50,7 @@ void copy(benchmark::State& state) {
 }
 void write(benchmark::State& state) {
     const BrdfRows rows = manyRows();
-    for (auto _ : state) benchmark::DoNotOptimize(writeBird(rows, {}).bytes.data());
+    for (auto _ : state) benchmark::DoNotOptimize(writeBird(rows, {})->bytes.data());
     count(state);
 }
 void read(benchmark::State& state) {

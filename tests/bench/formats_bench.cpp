@@ -216,7 +216,7 @@ void registerAll() {
         measure(
             std::string("bird 300 000 rows") + (measured ? " with u and flags" : ""),
             [=] { return birdRows(measured); },
-            [](const BrdfRows& rows) { return writeBird(rows, {}).bytes; },
+            [](const BrdfRows& rows) { return writeBird(rows, {})->bytes; },
             [](std::string_view bytes) { return parseBird(bytes, "in"); });
     }
 }

@@ -51,16 +51,23 @@ void HidrawNode::connect() {
     });
 }
 
-void HidrawNode::pull() {
+void HidrawNode::pull(bool quietly) {
     live_.listen({});
-    MockNode::pull();
+    MockNode::pull(quietly);
 }
 
-void HidrawNode::firstOpened() { discardUnread(terminal_); }
+void HidrawNode::firstOpened() {
+    discardUnread(terminal_);
+    live_.with([](sim::FaultyUsb& usb) { usb.reportsOpened(); });
+}
+
+bool HidrawNode::hung() const {
+    return live_.faults.hung || live_.with([](sim::FaultyUsb& usb) { return usb.hung(); });
+}
 
 void HidrawNode::waitWhileHung() const {
     const auto end = std::chrono::steady_clock::now() + kKernelPatience;
-    while (live_.faults.hung && std::chrono::steady_clock::now() < end)
+    while (hung() && !gone() && std::chrono::steady_clock::now() < end)
         std::this_thread::sleep_for(5ms);
 }
 
@@ -75,10 +82,10 @@ gboolean HidrawNode::onWrite(UMockdevIoctlBase*, UMockdevIoctlClient* client, Hi
     const UMockdevIoctlData* arg = umockdev_ioctl_client_get_arg(client);
     const std::span report(arg->data, static_cast<std::size_t>(arg->data_len));
     self->waitWhileHung();
-    int error = self->gone() ? ENODEV : self->live_.faults.hung ? ETIMEDOUT : 0;
+    int error = self->gone() ? ENODEV : self->hung() ? ETIMEDOUT : 0;
     if (error == 0) {
         const auto reply =
-            self->live_.with([&](sim::UsbDevice& usb) { return usb.interruptOut(report); });
+            self->live_.with([&](sim::FaultyUsb& usb) { return usb.interruptOut(report); });
         if (reply.answer != sim::UsbAnswer::Done) error = EPIPE;
     }
     umockdev_ioctl_client_complete(client, error == 0 ? arg->data_len : -1, error);
@@ -113,7 +120,8 @@ int HidrawNode::answer(unsigned long request, UMockdevIoctlData* arg) {
 
 int HidrawNode::feature(bool get, std::span<std::uint8_t> report) {
     waitWhileHung();
-    if (live_.faults.hung) return -ETIMEDOUT;
+    if (gone()) return -ENODEV;
+    if (hung()) return -ETIMEDOUT;
     constexpr std::uint16_t kFeature = 3 << 8;
     const sim::UsbSetup setup{.requestType = static_cast<std::uint8_t>(get ? 0xA1 : 0x21),
                               .request = static_cast<std::uint8_t>(get ? 1 : 9),
@@ -121,7 +129,7 @@ int HidrawNode::feature(bool get, std::span<std::uint8_t> report) {
                               .index = sim::UsbDevice::kHidInterface,
                               .length = static_cast<std::uint16_t>(report.size())};
     const auto reply = live_.with(
-        [&](sim::UsbDevice& usb) { return get ? usb.control(setup) : usb.control(setup, report); });
+        [&](sim::FaultyUsb& usb) { return get ? usb.control(setup) : usb.control(setup, report); });
     if (reply.answer != sim::UsbAnswer::Done) return -EPIPE;
     std::copy(reply.data.begin(), reply.data.end(), report.begin());
     return get ? static_cast<int>(reply.data.size()) : static_cast<int>(report.size());

@@ -16,7 +16,7 @@ public:
     ~HidrawNode() override;
     /// Call once the test bed has the node.
     void connect();
-    void pull() override;
+    void pull(bool quietly) override;
 
 private:
     void firstOpened() override;
@@ -25,6 +25,7 @@ private:
     /// Bytes moved, or minus the errno.
     int answer(unsigned long request, UMockdevIoctlData* arg);
     int feature(bool get, std::span<std::uint8_t> report);
+    [[nodiscard]] bool hung() const;
     void waitWhileHung() const;
 
     sim::LiveRig& live_;

@@ -3,6 +3,7 @@
 #include <umockdev.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <stdexcept>
 
 #include "tests/device/hidraw_node.h"
@@ -10,6 +11,8 @@
 
 namespace gonio::device_test {
 namespace {
+
+using namespace std::chrono_literals;
 
 std::string hex(std::span<const std::uint8_t> bytes) {
     constexpr const char* kDigits = "0123456789ABCDEF";
@@ -42,11 +45,20 @@ std::string MockBus::real(const std::string& path) const {
 MockRig::MockRig(MockBus& bus, sim::DeviceConfig config, int port)
     : bus_(bus), live_(config), serial_(config.serial), port_(port) {
     plug();
+    hand_ = std::jthread([this](const std::stop_token& stop) {
+        while (!stop.stop_requested()) {
+            watchTheCable();
+            std::this_thread::sleep_for(1ms);
+        }
+    });
 }
 
 MockRig::~MockRig() {
+    hand_.request_stop();
+    hand_.join();
     live_.faults.hung = false;  // whoever is stuck in a request comes back
-    if (usbfs_) unplug();
+    live_.with([](sim::FaultyUsb& usb) { usb.cause(sim::FaultKind::EndHang); });
+    unplug();
 }
 
 std::string MockRig::usbNode() const { return "/dev/bus/usb/001/" + std::to_string(number_); }
@@ -57,7 +69,7 @@ std::string MockRig::hidNode() const { return "/dev/hidraw" + std::to_string(num
 std::string MockRig::description() {
     std::vector<std::uint8_t> descriptors;
     std::string speed;  // Mbit/s
-    live_.with([&](sim::UsbDevice& usb) {
+    live_.with([&](sim::FaultyUsb& usb) {
         speed = usb.kind() == sim::CameraKind::Usb3 ? "5000" : "480";
         descriptors = usb.deviceDescriptor();
         const auto config = usb.configDescriptor();
@@ -94,7 +106,39 @@ std::string MockRig::description() {
 }
 
 void MockRig::plug() {
+    const std::scoped_lock lock(mutex_);
+    live_.with([](sim::FaultyUsb& usb) {
+        if (!usb.plugged()) usb.plug();
+    });
+    if (!usbfs_) putUp();
+}
+
+void MockRig::unplug() {
+    const std::scoped_lock lock(mutex_);
+    live_.with([](sim::FaultyUsb& usb) { usb.unplug(); });
+    if (usbfs_) takeDown(false);
+}
+
+/// What a script does to the cable happens to the nodes.
+void MockRig::watchTheCable() {
+    const std::scoped_lock lock(mutex_);
+    bool plugged = false, quietly = false;
+    int pulls = 0;
+    live_.with([&](sim::FaultyUsb& usb) {
+        plugged = usb.plugged();
+        quietly = usb.quietlyPulled();
+        pulls = usb.pulls();
+    });
+    if (usbfs_ && (!plugged || pulls != pulls_)) takeDown(quietly);
+    if (!usbfs_ && plugged) putUp();
+}
+
+void MockRig::putUp() {
     number_ = number_ == 0 ? 100 + port_ : number_ + 10;
+    live_.with([this](sim::FaultyUsb& usb) {
+        serial_ = usb.usb().device().serial();
+        pulls_ = usb.pulls();
+    });
     usbfs_ = std::make_unique<UsbfsNode>(live_, bus_.testbed(), usbNode());
     hidraw_ = std::make_unique<HidrawNode>(live_, bus_.testbed(), hidNode());
     GError* error = nullptr;
@@ -106,10 +150,9 @@ void MockRig::plug() {
     hidraw_->connect();
 }
 
-void MockRig::unplug() {
-    usbfs_->pull();
-    hidraw_->pull();
-    live_.with([](sim::UsbDevice& usb) { usb.reset(); });
+void MockRig::takeDown(bool quietly) {
+    usbfs_->pull(quietly);
+    hidraw_->pull(quietly);
     const std::string port = std::to_string(port_);
     const std::string device = "/sys/devices/usb1/1-" + port;
     const std::string interface = device + "/1-" + port + ":1.";

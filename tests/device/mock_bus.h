@@ -4,7 +4,10 @@
 // process must run under umockdev-wrapper. Transports are closed before their rig and bus end.
 
 #include <memory>
+#include <mutex>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include "sim/live_rig.h"
 
@@ -39,7 +42,8 @@ public:
     MockRig& operator=(const MockRig&) = delete;
 
     void plug();
-    /// The cable is pulled: transfers in flight end in errors, then the nodes vanish.
+    /// The cable is pulled: transfers in flight end in errors, then the nodes vanish. A fault
+    /// script pulls it too.
     void unplug();
     [[nodiscard]] sim::LiveRig& live() { return live_; }
     [[nodiscard]] sim::Faults& faults() { return live_.faults; }
@@ -48,16 +52,23 @@ public:
 
 private:
     [[nodiscard]] std::string description();
+    void watchTheCable();
+    // With the mutex held:
+    void putUp();
+    void takeDown(bool quietly);
     [[nodiscard]] std::string hidName() const;
 
     MockBus& bus_;
     sim::LiveRig live_;
+    mutable std::mutex mutex_;  ///< of what follows
     std::string serial_;
     int port_;
+    int pulls_ = 0;   ///< of the rig's cable when the nodes were made
     int number_ = 0;  ///< of its nodes: another one each time it is plugged in
     std::vector<std::unique_ptr<MockNode>> pulled_;  ///< still open to those who had them
     std::unique_ptr<UsbfsNode> usbfs_;
     std::unique_ptr<HidrawNode> hidraw_;
+    std::jthread hand_;  ///< on the cable
 };
 
 }  // namespace gonio::device_test

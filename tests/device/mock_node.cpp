@@ -19,11 +19,11 @@ MockNode::~MockNode() { g_object_unref(handler_); }
 void MockNode::retire() {
     const auto end = std::chrono::steady_clock::now() + 1s;
     while (isOpen() && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(1ms);
-    if (!gone_) pull();
+    if (!gone_) pull(false);
     g_signal_handlers_disconnect_by_data(handler_, this);
 }
 
-void MockNode::pull() {
+void MockNode::pull(bool /*quietly*/) {
     gone_ = true;
     umockdev_testbed_detach_ioctl(testbed_, path_.c_str(), nullptr);
 }

@@ -18,8 +18,8 @@ public:
     virtual ~MockNode();
     MockNode(const MockNode&) = delete;
     MockNode& operator=(const MockNode&) = delete;
-    /// From now on the device is gone.
-    virtual void pull();
+    /// From now on the device is gone. Quietly: no transfer in flight ends in an error first.
+    virtual void pull(bool quietly);
 
 protected:
     [[nodiscard]] UMockdevIoctlBase* handler() const { return handler_; }

@@ -33,7 +33,7 @@ protected:
         auto placement = daemon::makePlacement(
             {.serial = kSerial, .seed = kSeed, .placed = what, .wedge = wedge}, *store);
         ASSERT_TRUE(placement) << placement.error().message;
-        rig.live().with([&](sim::UsbDevice& usb) { usb.device().place(std::move(*placement)); });
+        rig.live().with([&](sim::FaultyUsb& usb) { usb.device().place(std::move(*placement)); });
     }
     Json ask(std::vector<std::string> arguments) const {
         arguments.insert(arguments.begin(), "--json");
@@ -67,7 +67,7 @@ protected:
         return test::exitCodeOf(code);
     }
     [[nodiscard]] bool lit() {
-        return rig.live().with([](sim::UsbDevice& usb) { return usb.device().lit(); });
+        return rig.live().with([](sim::FaultyUsb& usb) { return usb.device().lit(); });
     }
     [[nodiscard]] httplib::Client api() const {
         httplib::Client client((gonio / "store/goniod.sock").string(), 80);
@@ -264,12 +264,12 @@ TEST_F(Lab, OpenInterlockFailsTheJobAndIsOverWhenItCloses) {
     awaitState("idle");
     const pid_t client = begin({"--yes", "calibrate", "mirror"});
     await("a lit LED", [&](const Json&) { return lit(); });
-    rig.live().with([](sim::UsbDevice& usb) { usb.device().setInterlock(0); });
+    rig.live().with([](sim::FaultyUsb& usb) { usb.device().setInterlock(0); });
     EXPECT_EQ(end(client), 5) << test::textOf(gonio / "client.err");
     awaitState("fault");
     EXPECT_EQ(gonio({"calibrate", "mirror"}).exitCode, 5);
     rig.live().with(
-        [](sim::UsbDevice& usb) { usb.device().setInterlock(driver::interlock::kMayLight); });
+        [](sim::FaultyUsb& usb) { usb.device().setInterlock(driver::interlock::kMayLight); });
     awaitState("idle");
 }
 

@@ -65,16 +65,16 @@ protected:
 };
 
 TEST_F(UsbFaults, AStallCostsAChunkAndNoFrame) {
-    mock.live().with([](sim::UsbDevice& usb) { usb.haltStream(); });
+    mock.live().with([](sim::FaultyUsb& usb) { usb.cause(sim::FaultKind::StallBulk); });
     repaired(litFrames(1, 3));
 }
 
 TEST_F(UsbFaults, TheThirdStallInTenSecondsIsAFailure) {
     for (std::uint64_t step = 1; step <= 2; ++step) {
-        mock.live().with([](sim::UsbDevice& usb) { usb.haltStream(); });
+        mock.live().with([](sim::FaultyUsb& usb) { usb.cause(sim::FaultKind::StallBulk); });
         repaired(litFrames(step));
     }
-    mock.live().with([](sim::UsbDevice& usb) { usb.haltStream(); });
+    mock.live().with([](sim::FaultyUsb& usb) { usb.cause(sim::FaultKind::StallBulk); });
     const auto capture = rig->capture(litFrames(3));
     ASSERT_FALSE(capture);
     EXPECT_EQ(capture.error().kind, ErrorKind::Device);
@@ -106,7 +106,8 @@ TEST_F(UsbFaults, WithTheNextCaptureArmedFaultsChangeNoFrame) {
     for (std::uint64_t step = 1; step <= 12; ++step) {
         if (step % 4 == 1) mock.faults().shorten = 1;
         if (step % 4 == 2) mock.faults().overflow = 1;
-        if (step == 7) mock.live().with([](sim::UsbDevice& usb) { usb.haltStream(); });
+        if (step == 7)
+            mock.live().with([](sim::FaultyUsb& usb) { usb.cause(sim::FaultKind::StallBulk); });
         const auto capture = rig->capture(litFrames(step, 2), {litFrames(step + 1, 2)});
         ASSERT_TRUE(capture) << capture.error().message;
         const auto wanted = undisturbed(litFrames(step, 2));

@@ -27,7 +27,7 @@ inline sim::Placement mattGrey() {
 class UsbRigTest : public testing::Test {
 protected:
     explicit UsbRigTest(const sim::DeviceConfig& config = rigConfig()) : mock(bus, config) {
-        mock.live().with([](sim::UsbDevice& usb) { usb.device().place(mattGrey()); });
+        mock.live().with([](sim::FaultyUsb& usb) { usb.device().place(mattGrey()); });
     }
     /// The transport, or a failed test.
     [[nodiscard]] std::unique_ptr<driver::Transport> opened() {

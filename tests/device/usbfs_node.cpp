@@ -36,6 +36,15 @@ std::span<std::uint8_t> buffer(UMockdevIoctlData* urb, std::size_t length) {
     return bytes;
 }
 
+int statusOf(sim::UsbAnswer answer) {
+    switch (answer) {
+        case sim::UsbAnswer::Stall: return -EPIPE;
+        case sim::UsbAnswer::Overflow: return -EOVERFLOW;
+        case sim::UsbAnswer::Gone: return -ENODEV;
+        default: return -EPROTO;
+    }
+}
+
 bool takeOne(std::atomic<int>& counter) {
     if (counter <= 0) return false;
     --counter;
@@ -64,9 +73,10 @@ void UsbfsNode::forget(std::deque<Urb>& urbs) {
     urbs.clear();
 }
 
-void UsbfsNode::pull() {
-    MockNode::pull();
+void UsbfsNode::pull(bool quietly) {
+    MockNode::pull(quietly);
     const std::scoped_lock lock(mutex_);
+    if (quietly) return;  // then reaping says that the device is gone
     for (Urb& urb : waiting_) {
         urb.status = -EPROTO;  // as most unplugs on a real kernel show
         done_.push_back(urb);
@@ -119,10 +129,11 @@ int UsbfsNode::answer(UMockdevIoctlClient* client) {
         case USBDEVFS_SUBMITURB: return submit(client, arg);
         case USBDEVFS_DISCARDURB: return discard(arg);
         case USBDEVFS_SETINTERFACE: return setInterface(arg);
+        case USBDEVFS_RESET: live_.with([](sim::FaultyUsb& usb) { usb.resetPort(); }); return 0;
         case USBDEVFS_CLEAR_HALT: {
             const sim::UsbSetup clear{
                 .requestType = 2, .request = 1, .index = sim::UsbDevice::kBulkIn};
-            live_.with([&](sim::UsbDevice& usb) { return usb.control(clear); });
+            live_.with([&](sim::FaultyUsb& usb) { return usb.control(clear); });
             return 0;
         }
         default: return ENOTTY;
@@ -135,7 +146,7 @@ int UsbfsNode::setInterface(UMockdevIoctlData* arg) {
                             .request = 11,
                             .value = static_cast<std::uint16_t>(wanted.altsetting),
                             .index = static_cast<std::uint16_t>(wanted.interface)};
-    const auto reply = live_.with([&](sim::UsbDevice& usb) { return usb.control(set); });
+    const auto reply = live_.with([&](sim::FaultyUsb& usb) { return usb.control(set); });
     return reply.answer == sim::UsbAnswer::Done ? 0 : EPIPE;
 }
 
@@ -147,15 +158,14 @@ int UsbfsNode::submit(UMockdevIoctlClient* client, UMockdevIoctlData* arg) {
             .reply = {},
             .status = 0};
     if (urbOf(data).type == USBDEVFS_URB_TYPE_CONTROL) {
-        if (live_.faults.hung) {
+        if (live_.faults.hung || !runControl(urb)) {
             waiting_.push_back(urb);
         } else {
-            runControl(urb);
             done_.push_back(urb);
         }
         return 0;
     }
-    if (static_cast<int>(waiting_.size()) >= live_.faults.mostTransfers) {
+    if (static_cast<int>(waiting_.size()) >= mostTransfers()) {
         umockdev_ioctl_data_unref(data);
         g_object_unref(client);
         return ENOMEM;
@@ -164,7 +174,13 @@ int UsbfsNode::submit(UMockdevIoctlClient* client, UMockdevIoctlData* arg) {
     return 0;
 }
 
-void UsbfsNode::runControl(Urb& urb) {
+int UsbfsNode::mostTransfers() {
+    const int most = live_.with([](sim::FaultyUsb& usb) { return usb.mostTransfers(); });
+    return std::min(most, live_.faults.mostTransfers.load());
+}
+
+/// False: the rig does not answer it.
+bool UsbfsNode::runControl(Urb& urb) {
     constexpr std::size_t kSetup = 8;
     const auto length = static_cast<std::size_t>(urbOf(urb.data).buffer_length);
     const auto bytes = buffer(urb.data, length);
@@ -177,10 +193,12 @@ void UsbfsNode::runControl(Urb& urb) {
                               .index = word(4),
                               .length = word(6)};
     urb.reply =
-        live_.with([&](sim::UsbDevice& usb) { return usb.control(setup, bytes.subspan(kSetup)); });
-    if (urb.reply.answer != sim::UsbAnswer::Done) urb.status = -EPIPE;
+        live_.with([&](sim::FaultyUsb& usb) { return usb.control(setup, bytes.subspan(kSetup)); });
+    if (urb.reply.answer == sim::UsbAnswer::Nak) return false;
+    if (urb.reply.answer != sim::UsbAnswer::Done) urb.status = statusOf(urb.reply.answer);
     std::copy(urb.reply.data.begin(), urb.reply.data.end(), bytes.begin() + kSetup);
     urbOf(urb.data).actual_length = static_cast<int>(urb.reply.data.size());
+    return true;
 }
 
 int UsbfsNode::discard(UMockdevIoctlData* arg) {
@@ -201,13 +219,13 @@ bool UsbfsNode::advanceBulk() {
     Urb& urb = waiting_.front();
     const auto length = static_cast<std::size_t>(urbOf(urb.data).buffer_length);
     bool wholePackets = true;
-    urb.reply = live_.with([&](sim::UsbDevice& usb) {
+    urb.reply = live_.with([&](sim::FaultyUsb& usb) {
         wholePackets = length % usb.bulkPacket() == 0;
         return usb.bulkIn(length);
     });
     if (urb.reply.answer == sim::UsbAnswer::Nak) return false;
-    if (urb.reply.answer == sim::UsbAnswer::Stall) {
-        urb.status = -EPIPE;
+    if (urb.reply.answer != sim::UsbAnswer::Done) {
+        urb.status = statusOf(urb.reply.answer);
     } else if (takeOne(live_.faults.overflow) || !wholePackets) {
         // A buffer that ends inside a packet has no room for a full one.
         urb.status = -EOVERFLOW;

@@ -19,7 +19,7 @@ class UsbfsNode : public MockNode {
 public:
     UsbfsNode(sim::LiveRig& live, UMockdevTestbed* testbed, std::string path);
     ~UsbfsNode() override;
-    void pull() override;
+    void pull(bool quietly) override;
 
 private:
     struct Urb {
@@ -35,7 +35,8 @@ private:
     int discard(UMockdevIoctlData* arg);
     int reap(UMockdevIoctlClient* client, UMockdevIoctlData* arg);
     int setInterface(UMockdevIoctlData* arg);
-    void runControl(Urb& urb);
+    [[nodiscard]] int mostTransfers();
+    bool runControl(Urb& urb);
     [[nodiscard]] bool advanceBulk();
     static void forget(std::deque<Urb>& urbs);
     void forgetTheDead();

@@ -398,7 +398,7 @@ TEST(Rig, ReportsItsStatusAndItsLink) {
     EXPECT_EQ(status->state, RigState::Idle);
     EXPECT_EQ(rig.link().strings().serial, "TEST-0001");
     EXPECT_EQ(rig.link().ident(), device.ident);
-    EXPECT_EQ(&rig.link().clock(), &device.clock());
+    EXPECT_EQ(rig.link().clock().now(), device.clock().now());
     device.mute = true;
     EXPECT_FALSE(rig.status());
 }

@@ -79,6 +79,28 @@ public:
         if (asReport) sendInput(encode(event));
     }
     void pass(Nanoseconds time) { now_ += time; }
+    /// The cable is pulled: dark, flushed, lapsed; what is on its way is lost. Frames and ACKs
+    /// stay.
+    void linkLost() {
+        led = {};
+        state = RigState::Idle;
+        stream.clear();
+        inputs_.clear();
+        if (session.owner == Owner::Alive) session.owner = Owner::Lapsed;
+    }
+    /// The power too: another boot, which knows nothing.
+    void powerLost() {
+        linkLost();
+        ++ident.bootId;
+        session = {};
+        lastAck_.reset();
+        events_.clear();
+        ram_.clear();
+        exposure_ = {};
+        format_ = {};
+        nextFrame_ = effective_ = sequence_ = 1;
+    }
+    void forgetFrames() { ram_.clear(); }
     std::deque<Bytes> stream;  ///< transfers to come
 
     // Transport
@@ -185,8 +207,9 @@ public:
 private:
     [[nodiscard]] Nanoseconds now() const override { return now_; }
 
-    [[nodiscard]] Status status() const {
-        return {.bootId = ident.bootId,
+    [[nodiscard]] Status status() {
+        return {.sequence = statusSequence_++,
+                .bootId = ident.bootId,
                 .state = state,
                 .newestEvent = events_.empty() ? 0 : events_.back().sequence,
                 .fault = fault,
@@ -228,10 +251,15 @@ private:
             }
         } else if (const auto refused = refuse.find(command.op); refused != refuse.end()) {
             ack.status = refused->second;
+        } else if (session.owner != Owner::Alive) {
+            ack.status = status::kNotOwner;
+        } else if (command.op == Op::Resend && !holds(decodeResend(command.arguments))) {
+            ack.status = status::kFrameGone;
+            session.lastCommand = command.sequence;
         } else {
             ack.result = execute(command);
         }
-        if (ack.status != status::kBusy) lastAck_ = ack;
+        if (ack.status != status::kBusy && ack.status != status::kNotOwner) lastAck_ = ack;
         if (loseAcks > 0) {
             --loseAcks;
         } else {
@@ -310,7 +338,12 @@ private:
                            .binning = format_.binning,
                            .frameNumber = number},
                 .trailer = {.validity = validity::kAll},
-                .pixels = picture(size, index)};
+                .pixels = picture(size, index),
+                .bootId = ident.bootId};
+    }
+
+    [[nodiscard]] bool holds(const Resend& arguments) const {
+        return ram_.contains({arguments.captureId, arguments.frame});
     }
 
     void resend(const Resend& arguments) {
@@ -330,6 +363,7 @@ private:
     }
 
     Nanoseconds now_{0}, nextStatus_{0}, lastCommandAt_{0};
+    std::uint16_t statusSequence_ = 0;
     Bytes lent_;  ///< the transfer that the caller has
     std::multimap<Nanoseconds, Report> inputs_;
     std::optional<Ack> lastAck_;

@@ -29,6 +29,7 @@ struct FrameToSend {
     Leader leader{};    ///< geometry and frame_bytes are filled in
     Trailer trailer{};  ///< frame_bytes and frame_crc are filled in
     Image<std::uint16_t> pixels{};
+    std::uint32_t bootId = kBoot;
 };
 
 /// LEADER, DATA..., TRAILER with stream_seq from `sequence` on.
@@ -43,7 +44,7 @@ inline std::vector<Bytes> toChunks(FrameToSend frame, std::uint32_t sequence) {
     frame.trailer.frameCrc = crc32c(data);
     const std::uint32_t count = (bytes + kPayload - 1) / kPayload;
     ChunkHeader header{.type = ChunkType::Leader,
-                       .bootId = kBoot,
+                       .bootId = frame.bootId,
                        .streamSequence = sequence,
                        .captureId = frame.captureId,
                        .frameIndex = static_cast<std::uint16_t>(frame.index),

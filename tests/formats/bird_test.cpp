@@ -55,7 +55,7 @@ FileRead<BrdfRows> parsed(const std::string& text) {
     return read ? std::move(*read) : FileRead<BrdfRows>{};
 }
 std::string written(const FileRead<BrdfRows>& read) {
-    return writeBird(read.content, read.about).bytes;
+    return writeBird(read.content, read.about)->bytes;
 }
 
 TEST(Bird, ReadsWhatALaboratoryWrites) {
@@ -86,7 +86,7 @@ TEST(Bird, WritesTheSameBytesAgain) {
         about.set(key::kDate, "2026-01-31T12:00:00Z");
         about.set("extra.a", "b\\c\nd");
         about.comments = {"a line", "", "another: one"};
-        const std::string once = writeBird(rows, about).bytes;
+        const std::string once = writeBird(rows, about)->bytes;
         const FileRead<BrdfRows> back = parsed(once);
         expectSameRows(back.content, rows);
         EXPECT_EQ(back.about, about);
@@ -100,7 +100,7 @@ TEST(Bird, WritesTheSameBytesAgain) {
 TEST(Bird, IsAFileThatTheSchemaTakes) {
     BrdfRows rows = test::measuredRows();
     rows.f[3] = -0.125;
-    const auto json = nlohmann::json::parse(writeBird(rows, {}).bytes);
+    const auto json = nlohmann::json::parse(writeBird(rows, {})->bytes);
     EXPECT_EQ(json.size(), 2U);
     for (const char* required : {"schema",
                                  "id",
@@ -138,7 +138,9 @@ TEST(Bird, IsAFileThatTheSchemaTakes) {
 TEST(Bird, KeepsNegativeValuesAndCountsThem) {
     BrdfRows rows = test::asymmetricRows();
     rows.f[3] = -0.125;
-    const Written out = writeBird(rows, {});
+    const auto written = writeBird(rows, {});
+    ASSERT_TRUE(written);
+    const Written& out = *written;
     ASSERT_EQ(out.loss.items.size(), 1U);
     EXPECT_EQ(out.loss.items[0].kind, Loss::Clamped);
     EXPECT_EQ(out.loss.items[0].count, 1U);
@@ -154,7 +156,9 @@ TEST(Bird, LeavesOutWhatIsMissingOrBelowAndCountsIt) {
     rows.flags[rows.index(5, 0)] = Flags{Flag::Blocked};
     rows.pairs[7].out = Direction::fromSpherical(100_deg, 0_deg);
     rows.pairs[8].out = Direction::fromSpherical(Radians(kPi / 2 - 1e-13), 0_deg);
-    const Written out = writeBird(rows, {});
+    const auto written = writeBird(rows, {});
+    ASSERT_TRUE(written);
+    const Written& out = *written;
     EXPECT_EQ(out.loss.items,
               (std::vector<LossReport::Item>{
                   {Loss::Masked, "missing values, left out", 4},
@@ -170,13 +174,13 @@ TEST(Bird, LeavesOutWhatIsMissingOrBelowAndCountsIt) {
 TEST(Bird, KeepsUncertaintiesOfWhichSomeAreNotKnown) {
     BrdfRows rows = test::measuredRows();
     rows.uRandom[4] = kNan;
-    const std::string text = writeBird(rows, {}).bytes;
+    const std::string text = writeBird(rows, {})->bytes;
     EXPECT_EQ(text.find("uBRDF"), std::string::npos);
     expectSameRows(parsed(text).content, rows);
     rows.uSystematic.clear();
-    expectSameRows(parsed(writeBird(rows, {}).bytes).content, rows);
+    expectSameRows(parsed(writeBird(rows, {})->bytes).content, rows);
     rows.uRandom[4] = 0.5;  // all known: uBRDF alone
-    const std::string combined = writeBird(rows, {}).bytes;
+    const std::string combined = writeBird(rows, {})->bytes;
     EXPECT_EQ(combined.find("u_random"), std::string::npos);
     expectSameRows(parsed(combined).content, rows);
 }
@@ -188,12 +192,12 @@ TEST(Bird, KeepsChannelsOfAnyKind) {
           Channel::ofBands()}) {
         BrdfRows rows = test::asymmetricRows();
         rows.channels = channels;
-        expectSameRows(parsed(writeBird(rows, {}).bytes).content, rows);
+        expectSameRows(parsed(writeBird(rows, {})->bytes).content, rows);
     }
     BrdfRows one = test::asymmetricRows();
     one.channels = {Channel{}};
     one.f.resize(one.pairs.size());
-    const std::string text = writeBird(one, {}).bytes;
+    const std::string text = writeBird(one, {})->bytes;
     EXPECT_EQ(text.find("wavelength"), std::string::npos);
     expectSameRows(parsed(text).content, one);
 }
@@ -201,7 +205,7 @@ TEST(Bird, KeepsChannelsOfAnyKind) {
 TEST(Bird, HoldsModelsAtNodesAndTheirMirror) {
     for (const char* spec : {"lambert,albedo=0.5", "ggx,alpha=0.05,f0=0.9"}) {
         const BrdfRows rows = test::modelRows(spec);
-        const BrdfRows back = parsed(writeBird(rows, {}).bytes).content;
+        const BrdfRows back = parsed(writeBird(rows, {})->bytes).content;
         expectSameRows(back, rows);
         if (spec[0] == 'g') test::expectPeaksAtTheMirror(back);
     }
@@ -330,7 +334,7 @@ TEST(Bird, SaysWhatIsWrong) {
 }
 
 TEST(Bird, RefusesFlagsThatAreNoMask) {
-    const std::string text = writeBird(test::measuredRows(), {}).bytes;
+    const std::string text = writeBird(test::measuredRows(), {})->bytes;
     for (const char* mask : {"-1", "1.5", "16384", "1e300"}) {
         const std::string wrong =
             replaced(text, "\"values\": [1025", std::string("\"values\": [") + mask);
@@ -375,6 +379,16 @@ TEST(Bird, ChecksAndConvertsThePartsOfAnUncertainty) {
     EXPECT_TRUE(refuses(parseBird(text("m", "[1, 1, 2, 2]"), "in"), {"u_random: unit 'm'"}));
     EXPECT_TRUE(
         refuses(parseBird(text("%", "[1, 1, -2, 2]"), "in"), {"u_random: -2, wanted 0 or more"}));
+}
+
+// Found by libFuzzer: it was written, and could not be read back.
+TEST(Bird, IsNotWrittenWithoutAValue) {
+    BrdfRows rows = test::measuredRows();
+    for (LightView& pair : rows.pairs) pair.in = Direction::fromSpherical(90_deg, 0_deg);
+    const auto out = writeBird(rows, {});
+    ASSERT_FALSE(out);
+    EXPECT_EQ(out.error().kind, ErrorKind::Usage);
+    EXPECT_EQ(out.error().message, "bird: no value at thetas below 90 degrees");
 }
 
 }  // namespace

@@ -81,7 +81,7 @@ TEST(RowRoundTrip, GivesASampleBackToTheBit) {
     EXPECT_EQ(differing(set, csv, true, true), 0U);
     EXPECT_EQ(csv.info, set.info);
     // BiRD has no missing values, and so no flags of them.
-    const SampleSet bird = backThrough(writeBird(rows, about).bytes, parseBird);
+    const SampleSet bird = backThrough(writeBird(rows, about)->bytes, parseBird);
     EXPECT_EQ(differing(set, bird, true, false), 0U);
     EXPECT_EQ(bird.info, set.info);
     // These have neither uncertainties nor flags.

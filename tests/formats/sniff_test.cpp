@@ -267,7 +267,7 @@ TEST(Sniff, IsNotMisledByNamesAndComments) {
         EXPECT_EQ(told(writeAstm(rows, about)->bytes, "a"), Format::Astm) << word;
         EXPECT_EQ(told(writeAlta(rows, about)->bytes, "a"), Format::Alta) << word;
         EXPECT_EQ(told(writePab(rows, about)->files.front().bytes, "a"), Format::Pab) << word;
-        EXPECT_EQ(told(writeBird(rows, about).bytes, "a"), Format::Bird) << word;
+        EXPECT_EQ(told(writeBird(rows, about)->bytes, "a"), Format::Bird) << word;
         EXPECT_EQ(told("# " + word + "\n" + test::smallZemax(), "a"), Format::Zemax) << word;
         EXPECT_EQ(told("# " + word + "\n" + kLightTools, "a"), Format::LightTools) << word;
     }

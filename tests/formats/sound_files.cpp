@@ -117,8 +117,8 @@ Files soundRgl() {
 }
 
 Files soundBird() {
-    return {proc::writeBird(smallRows({{"", 550}}, false), {}).bytes,
-            proc::writeBird(smallRows(Channel::ofBands(), true), smallAbout()).bytes,
+    return {proc::writeBird(smallRows({{"", 550}}, false), {})->bytes,
+            proc::writeBird(smallRows(Channel::ofBands(), true), smallAbout())->bytes,
             R"({"metadata": {}, "data": {"variables": [{"name": "theta_i", "unit": "deg"},
  {"name": "phi_i", "unit": "deg"}, {"name": "theta_r", "unit": "deg"}, {"name": "phi_r", "unit":
  "rad"}, {"name": "BRDF", "unit": "sr-1"}], "values": [[45, 0, 10, 1, 0.25], [45, 0, 20, 2, 0.5]]}}

@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # Runs every reader under libFuzzer for SECONDS in all, on all cores: tests/fuzz/run.sh TREE SECONDS
-# TREE is a build of the preset `fuzz`. What was found before is kept in TREE/corpus and begun from.
+# TREE is a build of the preset `asan`. What was found before is kept in TREE/corpus and begun from.
 # A failure prints the input's file and how to see it again; exit code 1.
 set -uo pipefail
 tree=${1:?TREE} seconds=${2:?SECONDS}
 words=$(cd "$(dirname "$0")" && pwd)/words
 programs=("$tree"/tests/fuzz/fuzz_*)
 [ -x "${programs[0]}" ] || {
-    echo "fuzz: $tree/tests/fuzz has no programs: cmake --preset fuzz, build formats_fuzz" >&2
+    echo "fuzz: $tree/tests/fuzz has no programs: cmake --preset asan, build fuzz_programs" >&2
     exit 1
 }
 cores=$(nproc)

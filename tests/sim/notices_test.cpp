@@ -16,7 +16,7 @@ int taken(Notices& notices) {
 TEST(Notices, ReportsComeInTheOrderInWhichTheyWereSaid) {
     Notices notices;
     EXPECT_FALSE(notices.take());
-    notices.raise({.code = event::kBoot, .arg0 = 5}, Nanoseconds(1'000'000));
+    notices.raise({.code = event::kBoot, .arg0 = 5}, 1000);
     notices.answer({.sequence = 3});
     notices.tell({.sequence = 9});
     const auto first = decodeEvent(*notices.take());
@@ -38,7 +38,7 @@ TEST(Notices, AStatusThatDoesNotFitTheHostsQueueIsLost) {
 TEST(Notices, TheLast64EventsCanBeReadAgainTwoAtATime) {
     Notices notices;
     EXPECT_EQ(notices.page().oldest, 0U);
-    for (int i = 0; i < 70; ++i) notices.raise({.code = event::kClaimed}, Nanoseconds(0));
+    for (int i = 0; i < 70; ++i) notices.raise({.code = event::kClaimed}, 0);
     taken(notices);
     EXPECT_EQ(notices.newestEvent(), 70U);
     EXPECT_EQ(notices.page().oldest, 7U);

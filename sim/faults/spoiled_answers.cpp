@@ -1,0 +1,129 @@
+#include "sim/faults/spoiled_answers.h"
+
+#include <algorithm>
+#include <array>
+
+#include "driver/protocol/crc.h"
+#include "driver/protocol/wire.h"
+
+namespace gonio::sim {
+namespace {
+
+constexpr std::uint8_t kGetDescriptor = 6, kGetReport = 1, kStringType = 3;
+constexpr std::uint8_t kIdent = 1, kLimits = 6;
+constexpr std::uint8_t kSerialString = 3, kProtocolString = 240;
+constexpr std::size_t kCrcAt = driver::kReportBytes - 2;
+
+/// A field that is overwritten; its report's CRC is sound again afterwards.
+struct Field {
+    std::string_view name;
+    std::uint8_t report;
+    std::size_t offset, bytes;
+    std::uint32_t value;
+};
+constexpr std::array kFields{
+    Field{"led-count-none", kIdent, 21, 1, 0},
+    Field{"led-count-many", kIdent, 21, 1, 200},
+    Field{"sensor-none", kIdent, 16, 2, 0},
+    Field{"bit-depth", kIdent, 20, 1, 77},
+    Field{"chunk-none", kIdent, 44, 4, 0},
+    Field{"chunk-huge", kIdent, 44, 4, 0xFFFFFFFF},
+    Field{"latency-none", kIdent, 60, 1, 0},
+    Field{"exposure-range", kIdent, 50, 4, 0xFFFFFFFF},
+    Field{"frames-none", kLimits, 4, 2, 0},
+    Field{"roi-none", kLimits, 3, 1, 0},
+    Field{"period-endless", kLimits, 6, 4, 0xFFFFFFFF},
+    Field{"scale-none", kLimits, 14, 2, 0},
+};
+
+/// A string descriptor's text instead of the rig's own.
+struct Text {
+    std::string_view name;
+    std::uint8_t index;
+    std::string_view text;
+};
+constexpr std::array kTexts{
+    Text{"serial-empty", kSerialString, ""},
+    Text{"serial-long", kSerialString, "SIM-0123456789-0123456789-0123456789-0123456789"},
+    Text{"serial-hostile", kSerialString, "SIM\x1b[2J\n%s%n"},
+    Text{"protocol-text", kProtocolString, "GRP/banana"},
+    Text{"protocol-none", kProtocolString, ""},
+};
+constexpr std::string_view kIdentCrc = "ident-crc", kIdentShort = "ident-short";
+
+void sealReport(std::vector<std::uint8_t>& report) {
+    driver::put<std::uint16_t>(report, kCrcAt, driver::crc16(std::span(report).first(kCrcAt)));
+}
+
+void setText(UsbReply& reply, std::string_view text) {
+    reply.data = {static_cast<std::uint8_t>(2 + 2 * text.size()), kStringType};
+    for (const char c : text) {
+        reply.data.push_back(static_cast<std::uint8_t>(c));
+        reply.data.push_back(0);
+    }
+}
+
+void malform(std::string_view name, std::uint8_t report, UsbReply& reply) {
+    for (const Field& field : kFields) {
+        if (field.name != name || field.report != report) continue;
+        for (std::size_t i = 0; i < field.bytes; ++i)
+            reply.data[field.offset + i] = static_cast<std::uint8_t>(field.value >> (8 * i));
+        sealReport(reply.data);
+    }
+    if (report != kIdent) return;
+    if (name == kIdentCrc) reply.data[kCrcAt] ^= 1;
+    if (name == kIdentShort) reply.data.resize(10);
+}
+
+}  // namespace
+
+std::string malformations() {
+    std::string list{kIdentCrc};
+    list += ", " + std::string(kIdentShort);
+    for (const Field& field : kFields) list += ", " + std::string(field.name);
+    for (const Text& text : kTexts) list += ", " + std::string(text.name);
+    return list;
+}
+
+bool isMalformation(std::string_view name) {
+    const auto named = [&](const auto& entry) { return entry.name == name; };
+    return name == kIdentCrc || name == kIdentShort ||
+           std::any_of(kFields.begin(), kFields.end(), named) ||
+           std::any_of(kTexts.begin(), kTexts.end(), named);
+}
+
+bool SpoiledAnswers::put(const DueFault& fault) {
+    switch (fault.kind) {
+        case FaultKind::NewerMinor: ++minor_; return true;
+        case FaultKind::NewerMajor: ++major_; return true;
+        case FaultKind::Malform: malformed_.push_back(fault.name); return true;
+        default: return false;
+    }
+}
+
+void SpoiledAnswers::spoil(const UsbSetup& setup, UsbReply& reply) const {
+    if (reply.answer != UsbAnswer::Done) return;
+    const auto low = static_cast<std::uint8_t>(setup.value & 0xFF);
+    const auto high = static_cast<std::uint8_t>(setup.value >> 8);
+    if (setup.requestType == 0xA1 && setup.request == kGetReport &&
+        reply.data.size() == driver::kReportBytes) {
+        if (low == kIdent && (major_ != 1 || minor_ != 0)) {
+            reply.data[1] = static_cast<std::uint8_t>(major_);
+            reply.data[2] = static_cast<std::uint8_t>(minor_);
+            sealReport(reply.data);
+        }
+        for (const std::string& name : malformed_) {
+            if (reply.data.size() == driver::kReportBytes) malform(name, low, reply);
+        }
+    }
+    if (setup.requestType != 0x80 || setup.request != kGetDescriptor || high != kStringType) return;
+    if (low == kProtocolString)
+        setText(reply, "GRP/" + std::to_string(major_) + "." + std::to_string(minor_));
+    for (const Text& text : kTexts) {
+        const bool wanted =
+            std::find(malformed_.begin(), malformed_.end(), text.name) != malformed_.end();
+        if (wanted && text.index == low) setText(reply, text.text);
+    }
+}
+
+}  // namespace gonio::sim
