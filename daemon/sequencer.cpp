@@ -66,7 +66,9 @@ Result<driver::Capture> Sequencer::capture(const driver::CaptureRequest& request
                                            const driver::ArmAhead& ahead,
                                            const driver::FrameSink& sink) {
     attendance_.alive();
-    return rig_.capture(request, ahead, sink);
+    Result<driver::Capture> taken = rig_.capture(request, ahead, sink);
+    if (taken && taken->recaptures > 0) brackets_.rejected(taken->evidence);
+    return taken;
 }
 
 /// Each attempt by the same plan steps.

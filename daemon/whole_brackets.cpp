@@ -27,7 +27,8 @@ WholeBrackets::WholeBrackets(driver::Rig& rig,
       profile_(profile),
       nextPlanStep_(nextPlanStep),
       attendance_(attendance),
-      watch_(profile.noise) {}
+      watch_(profile.noise),
+      boot_(rig.bootId()) {}
 
 Result<void> WholeBrackets::take(std::optional<State> state,
                                  const std::function<Result<void>()>& attempt) {
@@ -35,12 +36,12 @@ Result<void> WholeBrackets::take(std::optional<State> state,
     boots_ = oddAttempts_ = 0;
     cold_ = false;
     while (true) {
-        const std::uint32_t boot = rig_.bootId();
         isOdd_ = false;
         watch_.begin();
         Result<void> taken = warmUp(state);
         if (taken) taken = attempt();
-        if (rig_.bootId() != boot) {
+        if (rig_.bootId() != boot_) {
+            boot_ = rig_.bootId();
             cold_ = true;
             const std::string why = taken ? "the rig has booted again" : taken.error().message;
             if (++boots_ > kBoots) {

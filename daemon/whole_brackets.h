@@ -34,6 +34,8 @@ public:
                                     const std::function<Result<void>()>& attempt);
     /// An error, which has to end the attempt, for one that is not what was asked for.
     [[nodiscard]] Result<void> look(std::optional<State> state, const Frame& frame);
+    /// The driver has taken frames of it again, by what the rig said of them.
+    void rejected(const std::string& evidence) const { tell(Cause::Rejected, evidence); }
 
     [[nodiscard]] FrameWatch& watch() { return watch_; }
     [[nodiscard]] const std::vector<OddFrame>& oddFrames() const { return odd_; }
@@ -50,6 +52,7 @@ private:
     const Attendance& attendance_;
     FrameWatch watch_;
     std::vector<OddFrame> odd_;
+    std::uint32_t boot_;  ///< in which the last bracket was taken
 
     // Of the bracket at hand.
     std::optional<State> state_;

@@ -73,7 +73,7 @@ void Engine::settle(JobRecord& job, const Result<std::string>& outcome, const Mo
 void Engine::lookAfterRig(JobRecord& job, const Error& why) {
     if (!rig_) return;
     if (const auto there = rig_->status(); !there) {
-        job.state = JobState::Interrupted;
+        if (job.state == JobState::Failed) job.state = JobState::Interrupted;
         lost(why);
     } else if (const auto dark = rig_->darken(); !dark) {
         log::warning(dark.error().message);
