@@ -156,7 +156,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"InterlockOpenedForAWhile", "on frame 3 open interlock for 2s", "suspended"},
         Case{"TooWarmForAWhile", "on frame 11 overheat for 3s", "suspended"},
         Case{"PowerLost", "on frame 5 unplug\nat 3s plug rebooted", "new-boot"}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& one) { return one.param.name; });
 
 TEST(SetbacksOnSim, CableBumpIsNoneOfTheBracketsBusiness) {
     Bed undisturbed;
