@@ -11,12 +11,6 @@ namespace {
 constexpr int kBoots = 3;  // of a rig within one bracket
 constexpr std::uint16_t kFullLevel = 65535;
 
-/// The causes that pass by themselves, or by a person's hand; a broken LED does not.
-bool passes(const Error& why) {
-    return why.deviceStatus == driver::status::kInterlock ||
-           why.deviceStatus == driver::status::kOverTemp;
-}
-
 }  // namespace
 
 WholeBrackets::WholeBrackets(driver::Rig& rig,
@@ -62,10 +56,24 @@ Result<void> WholeBrackets::mayTakeAgain(const Error& why) {
         if (oddAttempts_++ > 0) return why.in("taken again, and once more not what was asked for");
         return {};
     }
-    if (!passes(why)) return why;
-    if (Result<void> again = attendance_.suspended(why); !again) return again;
+    const std::optional<Error> passing = passes(why);
+    if (!passing) return why;
+    if (Result<void> again = attendance_.suspended(*passing); !again) return again;
     tell(Cause::Suspended, why.message);
     return {};
+}
+
+/// The causes that pass by themselves, or by a person's hand; a broken LED does not. Dark frames do
+/// not stop when the interlock opens: they are merely not valid.
+std::optional<Error> WholeBrackets::passes(const Error& why) {
+    using namespace driver::status;
+    if (why.deviceStatus == kInterlock || why.deviceStatus == kOverTemp) return why;
+    if (why.deviceStatus != 0 || why.kind != ErrorKind::Device) return std::nullopt;
+    const Result<driver::Status> now = rig_.status();
+    const bool open =
+        now && (now->interlock & driver::interlock::kMayLight) != driver::interlock::kMayLight;
+    if (!open) return std::nullopt;
+    return Error{why.kind, why.message, kInterlock};
 }
 
 Result<void> WholeBrackets::look(std::optional<State> state, const Frame& frame) {

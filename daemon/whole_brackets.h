@@ -44,6 +44,8 @@ private:
     using Cause = Setback::Cause;
     [[nodiscard]] Result<void> warmUp(std::optional<State> state);
     [[nodiscard]] Result<void> mayTakeAgain(const Error& why);
+    /// Why the rig will light again, though not now; empty: that is not known.
+    [[nodiscard]] std::optional<Error> passes(const Error& why);
     void tell(Cause cause, const std::string& message) const;
 
     driver::Rig& rig_;

@@ -171,6 +171,18 @@ TEST(SetbacksOnSim, CableBumpIsNoneOfTheBracketsBusiness) {
     expectSame(bed, undisturbed);
 }
 
+TEST(SetbacksOnSim, DarkFramesWaitForTheInterlockToo) {
+    Bed bed("on frame 3 open interlock for 2s");
+    Sequencer sequencer(*bed.rig, bed.profile, bed.nextPlanStep, bed.attendance);
+    const auto darks = sequencer.darks(4, [] { return Result<void>(); });
+    ASSERT_TRUE(darks) << darks.error().message;
+    EXPECT_EQ(darks->size(), bed.profile.exposures.size());
+    EXPECT_EQ(bed.clearings, 1);
+    ASSERT_FALSE(bed.setbacks.empty());
+    EXPECT_EQ(bed.setbacks.back().cause, Setback::Cause::Suspended);
+    EXPECT_EQ(bed.setbacks.back().bracket, "dark");
+}
+
 TEST(SetbacksOnSim, FrameThatStaysOddIsRefusedWithItsEvidence) {
     Bed bed("with chance 1 per frame black frame");
     const auto refused = bed.take();
