@@ -7,6 +7,7 @@
 
 #include "driver/hid_channel.h"
 #include "driver/usb_find.h"
+#include "driver/usb_ledger.h"
 #include "proc/core/log.h"
 
 namespace gonio::driver {
@@ -79,7 +80,11 @@ Result<std::shared_ptr<HidChannel>> HidChannel::open(const HidNode& node) {
     if (const std::string obstacle = hidObstacle(node); !obstacle.empty())
         return Error{ErrorKind::Busy, what + ": " + obstacle};
     std::shared_ptr<HidChannel> channel(new HidChannel(node));
-    channel->thread_ = std::thread([channel] { channel->serve(); });
+    channel->thread_ = std::thread([channel] {
+        ++usbLedger().hidThreads;
+        channel->serve();
+        --usbLedger().hidThreads;
+    });
     const auto opened = channel->ask(Kind::Open, {});
     if (opened) return channel;
     channel->askToStop();
@@ -153,6 +158,7 @@ void HidChannel::awaitStop(std::chrono::steady_clock::time_point deadline) {
         thread_.join();
     } else {
         log::warning("rig " + node_.serial + ": its reports do not end; they are left behind");
+        ++usbLedger().quarantinedThreads;
         thread_.detach();
     }
 }

@@ -14,6 +14,8 @@ constexpr int kMostTries = 1000;
 }  // namespace
 
 Result<void> Rig::comeBack(const Error& lost) {
+    // A stream that fails again and again is a fault: the rig is there, and would fail again.
+    if (lost.deviceStatus == status::kLink) return lost;
     const std::uint32_t boot = bootId();
     const Clock& clock = link_->clock();
     Interruption gap{.cause = lost.message, .at = clock.now()};

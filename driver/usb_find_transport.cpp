@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <functional>
 
 #include "driver/usb_find.h"
 
@@ -36,6 +37,8 @@ std::string knownSerial(const std::string& place) {
     std::ifstream file("/sys/bus/usb/devices/" + place + "/serial");
     std::string serial;
     std::getline(file, serial);
+    const auto printable = [](char c) { return c >= ' ' && c <= '~'; };
+    std::replace_if(serial.begin(), serial.end(), std::not_fn(printable), '?');
     return serial;
 }
 
@@ -97,7 +100,8 @@ std::string stringOf(libusb_device_handle* handle, std::uint8_t index) {
     std::string text;
     for (std::size_t i = 2; i + 1 < std::min<std::size_t>(raw[0], static_cast<std::size_t>(n));
          i += 2) {
-        text += raw[i + 1] == 0 && raw[i] < 0x80 ? static_cast<char>(raw[i]) : '?';
+        const bool printable = raw[i + 1] == 0 && raw[i] >= ' ' && raw[i] <= '~';
+        text += printable ? static_cast<char>(raw[i]) : '?';
     }
     return text;
 }

@@ -45,12 +45,16 @@ public:
     [[nodiscard]] Result<std::optional<BulkBytes>> read(Nanoseconds wait);
     /// SET_INTERFACE(stream, 0): drops what has come.
     Result<void> reset();
+    /// Resets the port, on the stream's own thread; the stream has failed then, for the rig has
+    /// lost its link. An error when the port is not reset in a second.
+    Result<void> resetPort();
     /// Asks the thread to end, and waits for it until `deadline`; a thread that is stuck in the
     /// kernel then keeps this object alive by itself.
     void askToStop();
     void awaitStop(std::chrono::steady_clock::time_point deadline);
 
     [[nodiscard]] const DeviceStrings& strings() const { return rig_.strings; }
+    [[nodiscard]] const RigInterfaces& interfaces() const { return rig_.interfaces; }
     [[nodiscard]] std::optional<Error> failure() const;
     [[nodiscard]] StreamCounters counters() const;
     /// A transfer has ended. Called by libusb, on the thread of the stream.
@@ -74,9 +78,11 @@ private:
     [[nodiscard]] bool drain();
     void recover(bool stalled);
     void doReset();
+    void doResetPort();
     [[nodiscard]] bool stillThere();
     // With the mutex held:
     void submitIdle();
+    void inFlight(int change);
     void takeBackLent();
     void shrink();
     [[nodiscard]] std::string memoryHint() const;
@@ -97,7 +103,8 @@ private:
     bool holding_ = true;  ///< nothing is submitted: before start, while draining, after the end
     bool stalled_ = false, suspect_ = false, resetWanted_ = false;
     bool stopping_ = false, finished_ = false, warned_ = false;
-    std::optional<Result<void>> resetDone_;
+    bool gone_ = false, portResetWanted_ = false;
+    std::optional<Result<void>> resetDone_, portReset_;
     std::optional<Error> failure_;
     FaultLimit limit_;
 };

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "driver/protocol/chunk.h"
+#include "driver/usb_ledger.h"
 #include "driver/usb_stream.h"
 #include "proc/core/log.h"
 
@@ -18,6 +19,7 @@ using SteadyTime = std::chrono::steady_clock::time_point;
 
 constexpr std::size_t kMostInFlight = std::size_t{2} << 20;  // PROTOCOL.md 3
 constexpr int kFewest = 2;
+constexpr std::size_t kMost = 64;  // however small the chunks are that a rig says it sends
 constexpr auto kDrainLimit = 500ms;
 constexpr auto kResetLimit = 1s;
 constexpr unsigned kProbeMs = 200;
@@ -37,10 +39,15 @@ std::size_t bufferBytes(std::size_t maxChunkPayload, std::size_t packet) {
 }  // namespace
 
 UsbStream::UsbStream(UsbContext context, OpenedRig rig)
-    : context_(std::move(context)), rig_(std::move(rig)) {}
+    : context_(std::move(context)), rig_(std::move(rig)) {
+    ++usbLedger().streams;
+}
 
 UsbStream::~UsbStream() {
+    --usbLedger().streams;
     if (inFlight_ > 0) {
+        usbLedger().transfersInFlight -= inFlight_;
+        usbLedger().quarantinedTransfers += inFlight_;
         // The kernel may still write into these buffers: better a leak than that.
         (void)std::make_unique<std::vector<Slot>>(std::move(slots_)).release();
         (void)rig_.handle.release();
@@ -53,7 +60,7 @@ UsbStream::~UsbStream() {
 
 Result<void> UsbStream::start(std::size_t maxChunkPayload) {
     const std::size_t bytes = bufferBytes(maxChunkPayload, rig_.interfaces.packet);
-    slots_.resize(std::max<std::size_t>(kFewest, kMostInFlight / bytes));
+    slots_.resize(std::clamp<std::size_t>(kMostInFlight / bytes, kFewest, kMost));
     ready_.reserve(slots_.size());
     for (Slot& slot : slots_) {
         slot.buffer.resize(bytes);
@@ -113,6 +120,21 @@ Result<void> UsbStream::reset() {
     return *failure_;
 }
 
+Result<void> UsbStream::resetPort() {
+    std::unique_lock lock(mutex_);
+    takeBackLent();
+    if (gone_) return *failure_;
+    portResetWanted_ = true;
+    portReset_.reset();
+    lock.unlock();
+    libusb_interrupt_event_handler(context_.get());
+    lock.lock();
+    changed_.wait_until(lock, steadyNow() + kResetLimit, [&] { return portReset_.has_value(); });
+    if (portReset_) return *portReset_;
+    fail({ErrorKind::Device, "rig " + strings().serial + ": its port cannot be reset"});
+    return *failure_;
+}
+
 void UsbStream::askToStop() {
     {
         std::unique_lock lock(mutex_);
@@ -131,6 +153,7 @@ void UsbStream::awaitStop(SteadyTime deadline) {
         thread_.join();
     } else {
         log::warning("rig " + strings().serial + ": its stream does not end; it is left behind");
+        ++usbLedger().quarantinedThreads;
         thread_.detach();
     }
 }
@@ -156,6 +179,12 @@ void UsbStream::serve() {
         const bool stalled = std::exchange(stalled_, false);
         const bool suspect = std::exchange(suspect_, false);
         const bool wanted = std::exchange(resetWanted_, false);
+        const bool port = std::exchange(portResetWanted_, false);
+        if (port) {
+            lock.unlock();
+            doResetPort();
+            continue;
+        }
         if (failure_) continue;
         lock.unlock();
         if (stalled || suspect) recover(stalled);
@@ -181,7 +210,7 @@ void UsbStream::ended(libusb_transfer& transfer) {
     const auto found = std::find_if(
         slots_.begin(), slots_.end(), [&](const Slot& slot) { return slot.transfer == &transfer; });
     Slot& slot = *found;  // only our own transfers end here
-    --inFlight_;
+    inFlight(-1);
     slot.place = Place::Idle;
     switch (transfer.status) {
         case LIBUSB_TRANSFER_COMPLETED:
@@ -195,6 +224,7 @@ void UsbStream::ended(libusb_transfer& transfer) {
             submitIdle();
             break;
         case LIBUSB_TRANSFER_NO_DEVICE:
+            gone_ = true;
             fail(usbError(LIBUSB_ERROR_NO_DEVICE, "read from rig " + strings().serial));
             break;
         case LIBUSB_TRANSFER_CANCELLED: break;
@@ -236,7 +266,7 @@ void UsbStream::recover(bool stalled) {
     if (!there) return fail(usbError(LIBUSB_ERROR_NO_DEVICE, "read from " + name));
     if (!drained) return fail({ErrorKind::Device, name + ": its transfers do not come back"});
     if (cleared != 0) return fail(usbError(cleared, "clear the halt of " + name));
-    if (again) return fail({ErrorKind::Device, name + ": its stream failed three times in 10 s"});
+    if (again) return fail(streamFault(name));
     holding_ = stopping_;
     submitIdle();
 }
@@ -258,6 +288,20 @@ void UsbStream::doReset() {
     changed_.notify_all();
 }
 
+/// Whatever became of it, the rig has to be opened anew.
+void UsbStream::doResetPort() {
+    (void)drain();
+    const int code = libusb_reset_device(rig_.handle.get());
+    std::unique_lock lock(mutex_);
+    const std::string name = "rig " + strings().serial;
+    if (code == 0 || code == LIBUSB_ERROR_NOT_FOUND) {  // the latter: it shows up anew
+        portReset_.emplace();
+    } else {
+        portReset_.emplace(usbError(code, "reset the port of " + name));
+    }
+    fail({ErrorKind::Device, name + ": its port was reset"});
+}
+
 bool UsbStream::stillThere() {
     std::array<std::uint8_t, 2> status{};
     return libusb_control_transfer(rig_.handle.get(),
@@ -271,6 +315,11 @@ bool UsbStream::stillThere() {
 }
 
 // ---- with the mutex held
+
+void UsbStream::inFlight(int change) {
+    inFlight_ += change;
+    usbLedger().transfersInFlight += change;
+}
 
 int UsbStream::busy() const { return inFlight_ + static_cast<int>(ready_.size()); }
 
@@ -288,10 +337,11 @@ void UsbStream::submitIdle() {
         const int code = libusb_submit_transfer(slot.transfer);
         if (code == 0) {
             slot.place = Place::InFlight;
-            ++inFlight_;
+            inFlight(1);
         } else if (code == LIBUSB_ERROR_NO_MEM) {
             return shrink();
         } else if (code == LIBUSB_ERROR_NO_DEVICE) {
+            gone_ = true;
             return fail(usbError(code, "read from rig " + strings().serial));
         } else {
             suspect_ = holding_ = true;

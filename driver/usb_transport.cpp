@@ -6,6 +6,7 @@
 #include "driver/protocol/reports.h"
 #include "driver/steady_clock.h"
 #include "driver/usb_find.h"
+#include "driver/usb_power.h"
 #include "driver/usb_stream.h"
 
 namespace gonio::driver {
@@ -13,11 +14,22 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kCloseLimit = 900ms;  // of the second that closing may take
+constexpr auto kCloseLimit = 900ms;   // of the second that closing may take
+constexpr auto kReopenLimit = 200ms;  // for the old reports to end
 // Where IDENT does not say it: the rig is of another major version, or damaged, and the link will
 // refuse it by name.
 constexpr std::size_t kAnyPayload = 64 * 1024;
 constexpr std::size_t kLargestPayload = std::size_t{16} << 20;
+
+Result<std::shared_ptr<HidChannel>> openReports(const DeviceStrings& rig,
+                                                const RigInterfaces& interfaces) {
+    const auto node = findHid(rig, interfaces.hid);
+    if (node) return HidChannel::open(*node);
+    return Error{ErrorKind::Device,
+                 "rig " + rig.serial +
+                     ": its HID interface has no hidraw node; is the module hidraw loaded, and "
+                     "/dev of this container complete?"};
+}
 
 class UsbTransport : public Transport {
 public:
@@ -64,11 +76,14 @@ public:
     }
     Result<void> resetStream() override { return stream_->reset(); }
     Result<void> reopenReports() override {
-        return Error{ErrorKind::Device, "rig " + strings().serial + ": its reports are silent"};
+        hid_->askToStop();
+        hid_->awaitStop(std::chrono::steady_clock::now() + kReopenLimit);
+        auto fresh = openReports(stream_->strings(), stream_->interfaces());
+        if (!fresh) return fresh.error();
+        hid_ = std::move(*fresh);
+        return {};
     }
-    Result<void> resetPort() override {
-        return Error{ErrorKind::Device, "rig " + strings().serial + " does not answer"};
-    }
+    Result<void> resetPort() override { return stream_->resetPort(); }
 
 private:
     SteadyClock clock_;
@@ -76,14 +91,50 @@ private:
     std::shared_ptr<HidChannel> hid_;
 };
 
-Result<FoundRig> theOne(std::vector<FoundRig> rigs, const UsbSelection& wanted) {
+struct Chosen {
+    OpenedRig opened;
+    std::string place;
+};
+
+Result<Chosen> choose(const FoundRig& found) {
+    auto opened = openRig(found);
+    if (!opened) return opened.error();
+    return Chosen{.opened = std::move(*opened), .place = found.rig.place};
+}
+
+/// A rig whose number the system does not tell is opened to read it.
+Result<Chosen> bySerial(const std::vector<FoundRig>& rigs, const std::string& serial) {
+    std::optional<Error> obstacle;
+    std::string others;
+    for (const FoundRig& found : rigs) {
+        auto chosen = choose(found);
+        if (!chosen) {
+            if (!obstacle || found.rig.serial == serial) obstacle = chosen.error();
+            continue;
+        }
+        const std::string& its = chosen->opened.strings.serial;
+        if (its == serial) return chosen;
+        if (its.empty()) {
+            obstacle = Error{ErrorKind::Device,
+                             "rig at " + chosen->place +
+                                 ": its serial number cannot be read; check its cable and power"};
+            continue;
+        }
+        others += (others.empty() ? "" : ", ") + its;
+    }
+    if (obstacle) return *obstacle;
+    return Error{ErrorKind::NoRig, "rig " + serial + " is not there, rig " + others + " is"};
+}
+
+Result<Chosen> theOne(const std::vector<FoundRig>& rigs, const UsbSelection& wanted) {
     const std::string ids = idText(wanted.vendor, wanted.product);
     if (rigs.empty()) {
         return Error{ErrorKind::NoRig,
                      "no rig " + (wanted.serial ? *wanted.serial + " " : std::string()) +
                          "with USB id " + ids + " is there; is it plugged in and powered?"};
     }
-    if (rigs.size() == 1) return std::move(rigs.front());
+    if (wanted.serial) return bySerial(rigs, *wanted.serial);
+    if (rigs.size() == 1) return choose(rigs.front());
     std::string names;
     for (const FoundRig& found : rigs) names += " " + found.rig.serial;
     return Error{ErrorKind::Usage,
@@ -134,27 +185,15 @@ Result<std::unique_ptr<Transport>> openUsb(const UsbSelection& wanted) {
     if (!context) return context.error();
     auto rigs = findRigs(context->get(), wanted);
     if (!rigs) return rigs.error();
-    auto found = theOne(std::move(*rigs), wanted);
-    if (!found) return found.error();
-    auto opened = openRig(*found);
-    if (!opened) return opened.error();
-    if (wanted.serial && opened->strings.serial != *wanted.serial) {
-        return Error{
-            ErrorKind::NoRig,
-            "rig " + *wanted.serial + " is not there, rig " + opened->strings.serial + " is"};
-    }
-    if (auto claimed = claimStream(*opened); !claimed) return claimed.error();
-    const auto node = findHid(opened->strings, opened->interfaces.hid);
-    if (!node) {
-        return Error{ErrorKind::Device,
-                     "rig " + opened->strings.serial +
-                         ": its HID interface has no hidraw node; is the module hidraw loaded, and "
-                         "/dev of this container complete?"};
-    }
-    auto hid = HidChannel::open(*node);
+    auto chosen = theOne(*rigs, wanted);
+    if (!chosen) return chosen.error();
+    rigs->clear();  // what they refer to must not outlive the context
+    keepAwake(chosen->place);
+    OpenedRig& opened = chosen->opened;
+    if (auto claimed = claimStream(opened); !claimed) return claimed.error();
+    auto hid = openReports(opened.strings, opened.interfaces);
     if (!hid) return hid.error();
-    found->device.reset();
-    auto stream = std::make_shared<UsbStream>(std::move(*context), std::move(*opened));
+    auto stream = std::make_shared<UsbStream>(std::move(*context), std::move(opened));
     std::unique_ptr<Transport> transport = std::make_unique<UsbTransport>(stream, *hid);
     const auto started = stream->start(payloadOf(**hid));
     if (!started) return started.error();

@@ -320,7 +320,7 @@ void Device::queueFrame(const Exposing& done, int index) {
     const Leader leader = leaderOf(done, format_, image.size(), digits_, temperatures());
     frames_.add({.capture = capture_->id,
                  .index = index,
-                 .chunks = frameChunks(header, leader, bytes, trailer)});
+                 .chunks = frameChunks(header, leader, bytes, trailer, config_.maxChunkPayload)});
     picture_ = std::move(image);
 }
 

@@ -17,6 +17,7 @@
 #include "sim/camera_kind.h"
 #include "sim/claim.h"
 #include "sim/exposing.h"
+#include "sim/frame_chunks.h"
 #include "sim/frame_flaw.h"
 #include "sim/frame_queue.h"
 #include "sim/led_drift.h"
@@ -33,6 +34,7 @@ struct DeviceConfig {
     std::uint32_t bootCount = 1;
     ReferenceErrors errors;
     CameraKind camera = CameraKind::Usb2;
+    std::uint32_t maxChunkPayload = kMaxChunkPayload;
     RigErrors rig{};
 };
 
@@ -42,6 +44,7 @@ public:
 
     // What a door needs. Times are since boot.
     [[nodiscard]] const std::string& serial() const { return config_.serial; }
+    [[nodiscard]] std::uint32_t maxChunkPayload() const { return config_.maxChunkPayload; }
     [[nodiscard]] CameraLink link() const { return cameraLink(config_.camera); }
     /// Empty: the request stalls.
     [[nodiscard]] std::optional<driver::Report> getFeature(std::uint8_t id);

@@ -50,7 +50,7 @@ Ident Device::ident() const {
         v.ledAngle[i] = static_cast<std::int16_t>(std::lround(100 * kLedDegrees[i]));
     }
     v.wavelengthNm = {630, 525, 465};
-    v.maxChunkPayload = kMaxChunkPayload;
+    v.maxChunkPayload = config_.maxChunkPayload;
     v.frameRam = kFrameRam;
     v.exposureMinUs = kExposureMinUs;
     v.exposureMaxUs = kExposureMaxUs;

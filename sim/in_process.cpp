@@ -33,8 +33,8 @@ UsbSetup featureRequest(bool get, std::uint8_t id) {
 std::string feature(int id) { return "feature report " + std::to_string(id); }
 
 /// A chunk rounded up to packets, and one packet: what ends it never stands alone.
-std::size_t transferBytes(std::size_t packet) {
-    const std::size_t chunk = driver::kChunkHeaderBytes + kMaxChunkPayload;
+std::size_t transferBytes(std::size_t maxPayload, std::size_t packet) {
+    const std::size_t chunk = driver::kChunkHeaderBytes + maxPayload;
     return ((chunk + packet - 1) / packet + 1) * packet;
 }
 
@@ -162,7 +162,7 @@ Result<void> InProcessDoor::reopenReports() {
 
 Result<std::optional<driver::BulkBytes>> InProcessDoor::readBulk(Nanoseconds wait) {
     const Nanoseconds deadline = now() + wait;
-    const std::size_t room = transferBytes(usb_->bulkPacket());
+    const std::size_t room = transferBytes(device().maxChunkPayload(), usb_->bulkPacket());
     do {
         if (failure_) return *failure_;
         if (auto fits = fitRing(); !fits) return fits.error();
@@ -194,7 +194,10 @@ Result<void> InProcessDoor::recover(UsbAnswer answer) {
                                  [&] { return usb_->control(stalled ? kClearHalt : kGetStatus); });
     if (!decided) return decided.error();
     ++(stalled ? counters_.stalls : counters_.errors);
-    if (limit_.third(now())) return fail("failed three times in 10 s in its stream");
+    if (limit_.third(now())) {
+        failure_ = driver::streamFault("rig " + strings_.serial);
+        return *failure_;
+    }
     return {};
 }
 

@@ -14,6 +14,8 @@
 #include "daemon/api/http_server.h"
 #include "daemon/api/options.h"
 #include "daemon/api/socket_path.h"
+#include "daemon/engine/recorded_port.h"
+#include "daemon/engine/replay_port.h"
 #include "daemon/engine/usb_port.h"
 #include "daemon/utc_now.h"
 #include "driver/steady_clock.h"
@@ -47,6 +49,11 @@ Result<std::unique_ptr<RigPort>> openPort(const std::string& rig,
                                           const RigProfile& profile) {
     const Result<RigChoice> choice = parseRigChoice(rig);
     if (!choice) return choice.error();
+    if (!choice->replay.empty()) {
+        auto replay = driver::Replay::open(choice->replay);
+        if (!replay) return replay.error();
+        return std::unique_ptr<RigPort>(std::make_unique<ReplayPort>(std::move(*replay)));
+    }
     if (!choice->simulated) {
         return std::unique_ptr<RigPort>(
             std::make_unique<UsbPort>(driver::UsbSelection{.serial = choice->serial}));
@@ -54,6 +61,14 @@ Result<std::unique_ptr<RigPort>> openPort(const std::string& rig,
     Result<std::unique_ptr<SimPort>> sim = SimPort::open(store, profile.cameraUsb);
     if (!sim) return sim.error();
     return std::unique_ptr<RigPort>(std::move(*sim));
+}
+
+Result<std::unique_ptr<RigPort>> recorded(std::unique_ptr<RigPort> port,
+                                          const std::filesystem::path& file) {
+    auto recorder = driver::Recorder::open(file);
+    if (!recorder) return recorder.error();
+    return std::unique_ptr<RigPort>(
+        std::make_unique<RecordedPort>(std::move(port), std::move(*recorder)));
 }
 
 /// Pictures come and go by the megabyte: each goes back to the system when it is freed, however
@@ -76,6 +91,7 @@ Result<void> serve(const DaemonOptions& options) {
         readProfile(options.profile.empty() ? defaultProfile() : options.profile);
     if (!profile) return profile.error();
     Result<std::unique_ptr<RigPort>> port = openPort(options.rig, store, *profile);
+    if (port && !options.record.empty()) port = recorded(std::move(*port), options.record);
     if (!port) return port.error();
     const driver::SteadyClock clock;
     EngineWorld world{.clock = clock, .utcNow = utcNow, .randomId = randomClaim, .alive = [] {
@@ -107,7 +123,7 @@ struct Arguments {
 
     Arguments() {
         app.set_version_flag("--version", GONIO_VERSION);
-        app.add_option("--rig", options.rig, "sim, usb or usb:SERIAL");
+        app.add_option("--rig", options.rig, "sim, usb, usb:SERIAL or replay:FILE");
         app.add_option("--store", options.store, "folder of calibrations and samples");
         app.add_option("--socket", options.socket, "where to serve; goniod.sock in the store");
         app.add_option("--socket-mode", options.socketMode, "0600, or 0660 for the group too");
@@ -117,6 +133,7 @@ struct Arguments {
                        "how long a job waits for a rig that was unplugged, or must not light; 600; "
                        "0: it ends at once")
             ->check(CLI::NonNegativeNumber);
+        app.add_option("--record", options.record, "record all traffic with the rig in this file");
         app.add_option("--config", config, "goniod.toml, for what the options above do not say");
         app.add_flag("-v,--verbose", verbose, "say on stderr what is done");
     }

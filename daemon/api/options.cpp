@@ -17,6 +17,7 @@ Result<DaemonOptions> readDaemonOptions(const std::filesystem::path& file) {
                           .store = keys.textOr("store", ""),
                           .socket = keys.textOr("socket", ""),
                           .profile = keys.textOr("profile", ""),
+                          .record = keys.textOr("record", ""),
                           .socketMode = keys.textOr("socket_mode", "")};
     constexpr double kNotTold = -1;
     const double comeback = keys.notNegativeOr("comeback_seconds", kNotTold);
@@ -31,21 +32,26 @@ DaemonOptions overlaid(DaemonOptions first, const DaemonOptions& second) {
     if (first.store.empty()) first.store = second.store;
     if (first.socket.empty()) first.socket = second.socket;
     if (first.profile.empty()) first.profile = second.profile;
+    if (first.record.empty()) first.record = second.record;
     if (first.socketMode.empty()) first.socketMode = second.socketMode;
     if (!first.comebackSeconds) first.comebackSeconds = second.comebackSeconds;
     return first;
 }
 
 Result<RigChoice> parseRigChoice(const std::string& rig) {
-    constexpr std::string_view kUsb = "usb:";
+    constexpr std::string_view kUsb = "usb:", kReplay = "replay:";
     if (rig == "sim") return RigChoice{.simulated = true};
     if (rig == "usb") return RigChoice{};
     if (rig.starts_with(kUsb) && rig.size() > kUsb.size()) {
         return RigChoice{.serial = rig.substr(kUsb.size())};
     }
+    if (rig.starts_with(kReplay) && rig.size() > kReplay.size()) {
+        return RigChoice{.replay = rig.substr(kReplay.size())};
+    }
     return Error{ErrorKind::Usage,
-                 rig.empty() ? "which rig? Say --rig sim, --rig usb or --rig usb:SERIAL"
-                             : "--rig '" + rig + "': wanted sim, usb or usb:SERIAL"};
+                 rig.empty()
+                     ? "which rig? Say --rig sim, --rig usb, --rig usb:SERIAL or --rig replay:FILE"
+                     : "--rig '" + rig + "': wanted sim, usb, usb:SERIAL or replay:FILE"};
 }
 
 Result<SocketAccess> parseSocketMode(const std::string& mode) {

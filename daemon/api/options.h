@@ -13,26 +13,29 @@ namespace gonio::daemon {
 
 /// Empty members have not been told.
 struct DaemonOptions {
-    std::string rig;  ///< "sim", "usb" or "usb:SERIAL"
+    std::string rig;  ///< "sim", "usb", "usb:SERIAL" or "replay:FILE"
     std::filesystem::path store;
     std::filesystem::path socket;
     std::filesystem::path profile;
-    std::string socketMode;  ///< "0600" (default) or "0660"
+    std::filesystem::path record;  ///< where the rig's traffic is recorded
+    std::string socketMode;        ///< "0600" (default) or "0660"
     /// How long a job waits for a rig that was lost, or must not light; 600 unless told.
     std::optional<double> comebackSeconds{};
 };
 
-/// Keys rig, store, socket, socket_mode, profile, comeback_seconds, all optional. File error that
-/// names the file and the key.
+/// Keys rig, store, socket, socket_mode, profile, record, comeback_seconds, all optional. File
+/// error that names the file and the key.
 [[nodiscard]] Result<DaemonOptions> readDaemonOptions(const std::filesystem::path& file);
 
 /// Each member of `first`; where that is empty, of `second`.
 [[nodiscard]] DaemonOptions overlaid(DaemonOptions first, const DaemonOptions& second);
 
-/// "usb:SERIAL" -> SERIAL. Usage error unless `rig` is sim, usb or usb:SERIAL.
+/// "usb:SERIAL" -> SERIAL, "replay:FILE" -> FILE. Usage error unless `rig` is one of these, sim or
+/// usb.
 struct RigChoice {
     bool simulated = false;
     std::optional<std::string> serial{};
+    std::filesystem::path replay{};  ///< empty: a rig
 };
 [[nodiscard]] Result<RigChoice> parseRigChoice(const std::string& rig);
 

@@ -62,7 +62,7 @@ Result<void> Engine::claim() {
         const auto set = logbook_.set(key, std::to_string(static_cast<std::int64_t>(id)));
         if (!set) return set;
     }
-    auto rig = driver::Rig::open(**transport, id);
+    auto rig = driver::Rig::open(**transport, port_.session().value_or(id));
     if (!rig) return rig.error();
     rig_.emplace(std::move(*rig));
     rig_->onLost([this](const Error& lost) { return comeBack(lost); });

@@ -2,6 +2,8 @@
 // Where a daemon's rig is: simulated in this process, or on USB. A port opens the rig, finds it
 // again, and knows what a person would otherwise have to tell: what lies under it.
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,7 +19,7 @@ class SimPort;
 
 /// A rig that could be used.
 struct RigListing {
-    std::string kind;  ///< "sim" or "usb"
+    std::string kind;  ///< "sim", "usb" or "replay"
     std::string serial;
     std::string place;     ///< bus and ports; empty for a simulated one
     std::string protocol;  ///< "GRP/1.0"; empty where it cannot be read
@@ -35,6 +37,8 @@ public:
     /// again.
     [[nodiscard]] virtual Result<driver::Transport*> open() = 0;
     virtual void close() = 0;
+    /// The session that this opening must be claimed with; empty: any.
+    [[nodiscard]] virtual std::optional<std::uint64_t> session() const { return {}; }
 
     /// What lies under the rig: "white", "mirror", a file, ...; empty: only a person knows.
     [[nodiscard]] virtual std::string placed() const = 0;

@@ -4,7 +4,10 @@
 #include <array>
 #include <chrono>
 #include <optional>
+#include <string>
 
+#include "driver/protocol/constants.h"
+#include "proc/core/result.h"
 #include "proc/core/units.h"
 
 namespace gonio::driver {
@@ -23,5 +26,13 @@ public:
 private:
     std::array<std::optional<Nanoseconds>, 2> last_{};
 };
+
+/// After the third. Its status, LINK, says that the rig is there and that opening it anew is no
+/// cure.
+[[nodiscard]] inline Error streamFault(const std::string& rig) {
+    return {ErrorKind::Device,
+            rig + ": its stream failed three times in 10 s; check its cable and hub",
+            status::kLink};
+}
 
 }  // namespace gonio::driver

@@ -26,6 +26,7 @@ struct Form {
 constexpr std::array kForms{
     Form{FaultKind::Unplug, "unplug", true},
     Form{FaultKind::UnplugQuietly, "unplug quietly", true},
+    Form{FaultKind::LosePower, "lose power", true},
     Form{FaultKind::Plug, "plug"},
     Form{FaultKind::PlugRebooted, "plug rebooted"},
     Form{FaultKind::PlugAs, "plug as $", true},

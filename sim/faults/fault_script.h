@@ -19,6 +19,7 @@ enum class FaultKind : std::uint8_t {
     // The cable.
     Unplug,
     UnplugQuietly,  ///< seen first by a submit that is refused
+    LosePower,      ///< unplugged, and another boot afterwards
     Plug,
     PlugRebooted,
     PlugAs,  ///< another rig, of this serial number

@@ -33,8 +33,9 @@ std::optional<FrameFlaw> flawOf(FaultKind kind) {
 std::optional<FaultKind> endOf(FaultKind kind) {
     switch (kind) {
         case FaultKind::Unplug:
-        case FaultKind::UnplugQuietly: return FaultKind::Plug;
-        case FaultKind::PlugAs: return FaultKind::Unplug;
+        case FaultKind::UnplugQuietly:
+        case FaultKind::PlugAs: return FaultKind::Plug;
+        case FaultKind::LosePower: return FaultKind::PlugRebooted;
         case FaultKind::OpenInterlock: return FaultKind::CloseInterlock;
         case FaultKind::Overheat: return FaultKind::CoolDown;
         case FaultKind::Hang: return FaultKind::EndHang;
@@ -78,7 +79,7 @@ void FaultyUsb::advanceTo(Nanoseconds to) {
 }
 
 Nanoseconds FaultyUsb::nextEvent() const {
-    const Nanoseconds next = std::min(player_.next(), reports_.nextEvent());
+    const Nanoseconds next = std::min(player_.next(), reports_.nextEvent(now()));
     return std::max(now(), std::min(usb_.device().nextEvent(), next));
 }
 
@@ -113,7 +114,8 @@ void FaultyUsb::apply(const DueFault& fault) {
 /// False: the fault is another's business.
 bool FaultyUsb::applyToRig(const DueFault& fault) {
     switch (fault.kind) {
-        case FaultKind::Unplug: unplug(); return true;
+        case FaultKind::Unplug:
+        case FaultKind::LosePower: unplug(); return true;
         case FaultKind::UnplugQuietly: unplug(true); return true;
         case FaultKind::Plug: plug(); return true;
         case FaultKind::PlugRebooted:
@@ -173,6 +175,7 @@ void FaultyUsb::unplug(bool quietly) {
     errorDue_ = !quietly;
     hung_ = hungUntilReset_ = false;
     ++pulls_;
+    pulledAt_ = now();
     chunks_.clear();
     if (!stranger_) usb_.reset();
     stranger_.reset();

@@ -51,6 +51,7 @@ public:
     [[nodiscard]] bool quietlyPulled() const { return quietly_; }
     /// How often it was pulled: whoever opened it before has lost it.
     [[nodiscard]] int pulls() const { return pulls_; }
+    [[nodiscard]] Nanoseconds pulledAt() const { return pulledAt_; }
     [[nodiscard]] bool hung() const { return hung_; }
     /// The system lets so many transfers be in flight.
     [[nodiscard]] int mostTransfers() const { return mostTransfers_; }
@@ -90,6 +91,7 @@ private:
     bool plugged_ = true, quietly_ = false, errorDue_ = false;
     bool hung_ = false, hungUntilReset_ = false;
     int pulls_ = 0;
+    Nanoseconds pulledAt_{0};
     int mostTransfers_;
     int commandsToLose_ = 0;
     int framesSent_ = 0, chunkOfFrame_ = -1;

@@ -36,7 +36,8 @@ bool ReportFaults::put(const DueFault& fault, Nanoseconds now) {
         case FaultKind::UnknownReport: extra_.push_back(unknownReport()); return true;
         case FaultKind::StallReports:
         case FaultKind::SilenceReports:
-            silence(fault.lasting > Nanoseconds(0) ? now + fault.lasting : Nanoseconds::max());
+            silentUntil_ =
+                fault.lasting > Nanoseconds(0) ? now + fault.lasting : Nanoseconds::max();
             tally_.add(fault.kind);
             return true;
         default: return false;
@@ -80,8 +81,9 @@ std::optional<Report> ReportFaults::next(Device& device) {
     return std::nullopt;
 }
 
-Nanoseconds ReportFaults::nextEvent() const {
-    return held_.empty() ? Nanoseconds::max() : held_.begin()->first;
+Nanoseconds ReportFaults::nextEvent(Nanoseconds now) const {
+    const auto next = held_.upper_bound(now);
+    return next == held_.end() ? Nanoseconds::max() : next->first;
 }
 
 }  // namespace gonio::sim

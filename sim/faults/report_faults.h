@@ -19,12 +19,13 @@ public:
     bool put(const DueFault& fault, Nanoseconds now);
     /// The next report that comes through of those that the rig has.
     [[nodiscard]] std::optional<driver::Report> next(Device& device);
-    /// When a report is due that was held back.
-    [[nodiscard]] Nanoseconds nextEvent() const;
+    /// When the next report is due that is still held back.
+    [[nodiscard]] Nanoseconds nextEvent(Nanoseconds now) const;
 
-    /// Nothing comes through until then, or until somebody opens the reports anew.
-    void silence(Nanoseconds until) { silentUntil_ = until; }
-    void opened() { silentUntil_ = Nanoseconds(0); }
+    /// Somebody opened the reports anew: what is silent for no certain time speaks again.
+    void opened() {
+        if (silentUntil_ == Nanoseconds::max()) silentUntil_ = Nanoseconds(0);
+    }
 
 private:
     FaultTally& tally_;

@@ -1,10 +1,13 @@
-// What a frame costs between the USB library and the Frame: one copy out of the transfer's buffer,
-// both checksums, the assembly, the verdict, the unpacking. A full frame of 1024 x 1024 pixels, 12
-// bit packed. Times 25 or 60 a second is the stream path's share of a core.
+// What a frame costs between the USB library and the Frame: both checksums, the one copy out of the
+// transfer's buffer, the assembly, the verdict, the unpacking; and its parts. A full frame of 1024
+// x 1024 pixels, 12 bit packed. Times 25 or 60 a second is the stream path's share of a core. Rates
+// are of the bytes as sent.
 
 #include <benchmark/benchmark.h>
 
 #include <cstring>
+#include <span>
+#include <variant>
 
 #include "driver/assembler.h"
 #include "driver/frame_plan.h"
@@ -60,6 +63,10 @@ Sent oneFrame() {
             {.bootId = kBoot, .captureId = kCapture, .frameIndex = 0}, leader, pixels, trailer)};
 }
 
+void setRate(benchmark::State& state, std::size_t bytes) {
+    state.SetBytesProcessed(static_cast<std::int64_t>(bytes) * state.iterations());
+}
+
 void streamPath(benchmark::State& state) {
     const Sent sent = oneFrame();
     const FramePlan plan{
@@ -69,27 +76,32 @@ void streamPath(benchmark::State& state) {
         .levels = {},
         .exposure = {.requested = Microseconds(320), .granted = Nanoseconds(kGranted)},
         .effectiveFrame = 1};
+    Assembler assembler;
+    Image<std::uint16_t> memory(kSize);
     for (auto _ : state) {
-        Assembler assembler;
         const auto expected = assembler.expect({.bootId = kBoot,
                                                 .captureId = kCapture,
                                                 .frames = 1,
                                                 .frameBytes = sent.frameBytes,
                                                 .maxChunkPayload = sim::kMaxChunkPayload});
         if (!expected) state.SkipWithError("not expected");
-        for (const Bytes& chunk : sent.chunks) {
-            const Bytes transfer = chunk;  // out of the ring's buffer
-            assembler.feed(transfer);
-        }
-        const auto wire = assembler.take();
+        for (const Bytes& chunk : sent.chunks) assembler.feed(chunk);
+        auto wire = assembler.take();
         if (!wire) {
             state.SkipWithError("no frame");
             break;
         }
-        auto verdict = judge(*wire, plan);
-        if (!std::holds_alternative<Frame>(verdict)) state.SkipWithError("not as planned");
-        benchmark::DoNotOptimize(verdict);
+        auto verdict = judge(*wire, plan, memory);
+        auto* frame = std::get_if<Frame>(&verdict);
+        if (!frame) {
+            state.SkipWithError("not as planned");
+            break;
+        }
+        benchmark::DoNotOptimize(frame);
+        memory = std::move(frame->pixels);
+        assembler.giveBack(std::move(*wire));
     }
+    setRate(state, sent.frameBytes);
     const auto rate = [&](double fps) {
         return benchmark::Counter(
             fps,
@@ -110,8 +122,38 @@ void copied(benchmark::State& state) {
         std::memcpy(to.data(), from.data(), from.size());
         benchmark::ClobberMemory();
     }
+    setRate(state, sent.frameBytes);
 }
 BENCHMARK(copied)->Unit(benchmark::kMicrosecond)->Repetitions(5)->ReportAggregatesOnly();
+
+template <std::uint32_t (*sum)(std::span<const std::uint8_t>)>
+void summed(benchmark::State& state) {
+    const Bytes bytes = oneFrame().chunks[1];
+    for (auto _ : state) benchmark::DoNotOptimize(sum(bytes));
+    setRate(state, bytes.size());
+}
+BENCHMARK(summed<crc32c>)->Name("crc")->Repetitions(5)->ReportAggregatesOnly();
+BENCHMARK(summed<crc32cByTable>)->Name("crcByTable")->Repetitions(5)->ReportAggregatesOnly();
+
+/// Pixels from their bytes, and with that the checksum of the bytes.
+void unpacked(benchmark::State& state) {
+    const bool checked = state.range(0) != 0;
+    const Bytes bytes(*strideOf(PixelFormat::Mono12Packed, kSize.width) * 1024U, 0x5A);
+    Image<std::uint16_t> image(kSize);
+    for (auto _ : state) {
+        if (checked) benchmark::DoNotOptimize(crc32c(bytes));
+        unpackInto(image, bytes, PixelFormat::Mono12Packed);
+        benchmark::ClobberMemory();
+    }
+    setRate(state, bytes.size());
+}
+BENCHMARK(unpacked)
+    ->ArgName("crc")
+    ->Arg(0)
+    ->Arg(1)
+    ->Unit(benchmark::kMicrosecond)
+    ->Repetitions(5)
+    ->ReportAggregatesOnly();
 
 }  // namespace
 }  // namespace gonio

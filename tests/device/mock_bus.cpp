@@ -62,8 +62,8 @@ MockRig::~MockRig() {
 }
 
 std::string MockRig::usbNode() const { return "/dev/bus/usb/001/" + std::to_string(number_); }
-std::string MockRig::hidName() const { return "0003:1209:0001.0" + std::to_string(number_); }
-std::string MockRig::hidNode() const { return "/dev/hidraw" + std::to_string(number_); }
+std::string MockRig::hidName() const { return "0003:1209:0001.0" + std::to_string(hidNumber_); }
+std::string MockRig::hidNode() const { return "/dev/hidraw" + std::to_string(hidNumber_); }
 
 /// What sysfs and udev of a Linux say of such a device.
 std::string MockRig::description() {
@@ -119,6 +119,11 @@ void MockRig::unplug() {
     if (usbfs_) takeDown(false);
 }
 
+void MockRig::forgetPulled() {
+    const std::scoped_lock lock(mutex_);
+    pulled_.clear();
+}
+
 /// What a script does to the cable happens to the nodes.
 void MockRig::watchTheCable() {
     const std::scoped_lock lock(mutex_);
@@ -134,7 +139,11 @@ void MockRig::watchTheCable() {
 }
 
 void MockRig::putUp() {
-    number_ = number_ == 0 ? 100 + port_ : number_ + 10;
+    // Upwards, and from the start again; three digits, as the node's name has them. Ports do not
+    // meet.
+    constexpr int kPorts = 8, kFirst = 100, kMost = 255;
+    number_ = number_ == 0 || number_ + kPorts > kMost ? kFirst + port_ : number_ + kPorts;
+    hidNumber_ = hidNumber_ == 0 ? kFirst + port_ : hidNumber_ + kPorts;  // never the same again
     live_.with([this](sim::FaultyUsb& usb) {
         serial_ = usb.usb().device().serial();
         pulls_ = usb.pulls();
@@ -142,6 +151,7 @@ void MockRig::putUp() {
     usbfs_ = std::make_unique<UsbfsNode>(live_, bus_.testbed(), usbNode());
     hidraw_ = std::make_unique<HidrawNode>(live_, bus_.testbed(), hidNode());
     GError* error = nullptr;
+    const std::scoped_lock lock(bus_.listeners());
     if (!umockdev_testbed_add_from_string(bus_.testbed(), description().c_str(), &error)) {
         const std::string why = error->message;
         g_error_free(error);
@@ -156,6 +166,7 @@ void MockRig::takeDown(bool quietly) {
     const std::string port = std::to_string(port_);
     const std::string device = "/sys/devices/usb1/1-" + port;
     const std::string interface = device + "/1-" + port + ":1.";
+    const std::scoped_lock lock(bus_.listeners());
     for (const std::string& path : {interface + "0/" + hidName() + "/hidraw" + hidNode().substr(4),
                                     interface + "0/" + hidName(),
                                     interface + "0",

@@ -28,9 +28,13 @@ public:
     [[nodiscard]] UMockdevTestbed* testbed() const { return testbed_; }
     /// Where a path of the mocked system is in truth.
     [[nodiscard]] std::string real(const std::string& path) const;
+    /// umockdev ends the process when it tells a listener to udev that is just closing. Rigs that
+    /// come and go hold this, and so does whoever opens or closes a transport meanwhile.
+    [[nodiscard]] std::mutex& listeners() { return listeners_; }
 
 private:
     UMockdevTestbed* testbed_;
+    std::mutex listeners_;
 };
 
 class MockRig {
@@ -45,6 +49,8 @@ public:
     /// The cable is pulled: transfers in flight end in errors, then the nodes vanish. A fault
     /// script pulls it too.
     void unplug();
+    /// Those who had the pulled nodes open have closed them.
+    void forgetPulled();
     [[nodiscard]] sim::LiveRig& live() { return live_; }
     [[nodiscard]] sim::Faults& faults() { return live_.faults; }
     [[nodiscard]] std::string usbNode() const;
@@ -63,8 +69,9 @@ private:
     mutable std::mutex mutex_;  ///< of what follows
     std::string serial_;
     int port_;
-    int pulls_ = 0;   ///< of the rig's cable when the nodes were made
-    int number_ = 0;  ///< of its nodes: another one each time it is plugged in
+    int pulls_ = 0;      ///< of the rig's cable when the nodes were made
+    int number_ = 0;     ///< of its usbfs node: another one each time it is plugged in
+    int hidNumber_ = 0;  ///< of its hidraw node
     std::vector<std::unique_ptr<MockNode>> pulled_;  ///< still open to those who had them
     std::unique_ptr<UsbfsNode> usbfs_;
     std::unique_ptr<HidrawNode> hidraw_;

@@ -1,12 +1,11 @@
 // The real USB code when the rig, the cable or the system does what it should not.
 
-#include <sys/fsuid.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <thread>
 
 #include "tests/device/usb_rig_fixture.h"
+#include "tests/device/without_rights.h"
 
 namespace gonio::device_test {
 namespace {
@@ -232,18 +231,6 @@ TEST_F(UsbRigTest, ARigThatAnotherProgramHasIsBusy) {
     EXPECT_EQ(transport.error().kind, ErrorKind::Busy);
     EXPECT_NE(transport.error().message.find("another program"), std::string::npos);
 }
-
-/// This thread, and those it starts, without the right to open what only root may.
-class WithoutRights {
-public:
-    WithoutRights() { setfsuid(kNobody); }
-    ~WithoutRights() { setfsuid(geteuid()); }
-    WithoutRights(const WithoutRights&) = delete;
-    WithoutRights& operator=(const WithoutRights&) = delete;
-
-private:
-    static constexpr uid_t kNobody = 65534;
-};
 
 TEST_F(UsbRigTest, WithoutPermissionItNamesTheUdevRule) {
     ASSERT_EQ(chmod(bus.real("").c_str(), 0777), 0);

@@ -48,4 +48,13 @@ inline driver::CaptureRequest litFrames(std::uint64_t planStep, int frames = 1) 
             .frames = frames};
 }
 
+/// No report was damaged, unknown or another's. On a machine that is busy elsewhere an ACK may come
+/// after the driver has read it by other means, and the system may drop a STATUS: no fault of ours.
+inline void expectCleanReports(const driver::LinkCounters& counters) {
+    EXPECT_EQ(counters.badReports, 0U);
+    EXPECT_EQ(counters.unknownReports, 0U);
+    EXPECT_EQ(counters.foreignAcks, 0U);
+    EXPECT_EQ(counters.missedEvents, 0U);
+}
+
 }  // namespace gonio::device_test

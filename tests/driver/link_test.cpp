@@ -61,7 +61,7 @@ TEST(RigLink, AcceptsANewerMinor) {
 
 TEST(RigLink, RefusesWhatIsNoVersion) {
     for (const char* text :
-         {"", "GRP", "GRP/", "GRP/1", "GRP/1.", "GRP/x.0", "GRP/1.0 ", "XYZ/1.0"}) {
+         {"", "GRP", "GRP/", "GRP/1", "GRP/1.", "GRP/x.0", "GRP/1.0 ", "XYZ/1.0", "GRP/1.-1"}) {
         ScriptedRig rig;
         rig.identity.protocol = text;
         EXPECT_EQ(refusal(rig).kind, ErrorKind::Device) << text;
@@ -87,6 +87,32 @@ TEST(RigLink, RefusesImpossibleIdentAndLimits) {
     EXPECT_TRUE(refused([](ScriptedRig& r) { r.limits.roiStep = 0; }));
     EXPECT_TRUE(refused([](ScriptedRig& r) { r.limits.framePeriodUs = 0xFFFFFFFF; }));
     EXPECT_TRUE(refused([](ScriptedRig& r) { r.limits.fullScale = 60; }));
+    EXPECT_TRUE(refused([](ScriptedRig& r) { r.limits.fullScale = 4096; })) << "of 12 bits";
+    EXPECT_TRUE(refused([](ScriptedRig& r) { r.limits.formats = 4; })) << "none that we know";
+    EXPECT_TRUE(refused([](ScriptedRig& r) { r.ident.sensorWidth = r.ident.sensorHeight = 65535; }))
+        << "its frame_bytes have no room on the wire";
+}
+
+TEST(RigLink, RefusesHostileStringsAndSaysThemWithoutHarm) {
+    for (const std::string& serial : {std::string(),
+                                      std::string(33, 'A'),
+                                      std::string("\x1B[2J"),
+                                      std::string("A\0B", 3),
+                                      std::string("A B"),
+                                      std::string("\xFF")}) {
+        ScriptedRig rig;
+        rig.identity.serial = serial;
+        const Error error = refusal(rig);
+        EXPECT_TRUE(mentions(error, "serial number")) << error.message;
+        EXPECT_LT(error.message.size(), 120U);
+        for (const char c : error.message) EXPECT_TRUE(c >= ' ' && c <= '~') << serial;
+    }
+    ScriptedRig rig;
+    rig.identity.protocol = "\x1B]0;hello\x07" + std::string(10000, 'x');
+    const Error error = refusal(rig);
+    EXPECT_TRUE(mentions(error, "not a gonio rig"));
+    EXPECT_LT(error.message.size(), 200U);
+    EXPECT_EQ(error.message.find('\x1B'), std::string::npos);
 }
 
 TEST(RigLink, RefusesOptionsOutOfTheirDomain) {
@@ -307,6 +333,117 @@ TEST(RigLink, EventsAreReadAgainWhenTheirReportsAreLost) {
     ASSERT_TRUE(events);
     EXPECT_EQ(*events, (std::vector<Event>{opened2, closed3, removed4}));
     EXPECT_TRUE(link->takeEvents()->empty());
+}
+
+TEST(RigLink, EventsWhoseReportsAreLostAreReadAgainBeforeTheRigForgetsThem) {
+    ScriptedRig rig;
+    const auto link = opened(rig);
+    constexpr std::uint32_t kAll = 300;  // the rig keeps 64
+    for (std::uint32_t n = 1; n <= kAll; ++n) {
+        rig.raise({.sequence = n, .code = event::kInterlockOpened}, false);
+        if (n % 50 != 0) continue;
+        rig.pass(100ms);  // a STATUS says that there is something
+        ASSERT_TRUE(link->keepAlive());
+    }
+    const auto events = link->takeEvents();
+    ASSERT_TRUE(events);
+    ASSERT_EQ(events->size(), kAll);
+    for (std::uint32_t n = 1; n <= kAll; ++n) EXPECT_EQ((*events)[n - 1].sequence, n);
+    EXPECT_EQ(link->counters().missedEvents, 0U);
+}
+
+TEST(RigLink, EventsThatTheRigHasForgottenAreCounted) {
+    ScriptedRig rig;
+    const auto link = opened(rig);
+    rig.raise({.sequence = 6, .code = event::kBoot}, false);  // 1..5 are gone
+    EXPECT_EQ(link->takeEvents()->size(), 1U);
+    EXPECT_EQ(link->counters().missedEvents, 5U);
+}
+
+TEST(RigLink, ARigThatPromisesEventsItDoesNotHaveCostsOneLook) {
+    ScriptedRig rig;
+    const auto link = opened(rig);
+    rig.promisedEvents = 1000;
+    rig.pass(100ms);
+    ASSERT_TRUE(link->keepAlive());
+    const int looks = rig.eventPages;
+    for (int i = 0; i < 20; ++i) {
+        rig.pass(100ms);
+        ASSERT_TRUE(link->keepAlive());
+    }
+    EXPECT_EQ(rig.eventPages, looks);
+}
+
+TEST(RigLink, GapsInTheNumbersOfStatusAreCounted) {
+    ScriptedRig rig;
+    const auto link = opened(rig);
+    const auto say = [&](std::uint16_t sequence) {
+        rig.sendInput(encode(Status{.sequence = sequence, .bootId = rig.ident.bootId}));
+        ASSERT_TRUE(link->keepAlive());
+    };
+    rig.mute = true;
+    say(65533);
+    say(65534);
+    EXPECT_EQ(link->counters().lostStatuses, 0U);
+    say(2);  // 65535, 0 and 1 are missing
+    EXPECT_EQ(link->counters().lostStatuses, 3U);
+    say(2);
+    say(1);
+    EXPECT_EQ(link->counters().lostStatuses, 3U) << "what comes twice is no gap";
+}
+
+TEST(RigLink, TheTimeOfTheRigMeansNothing) {
+    ScriptedRig rig;
+    const auto link = opened(rig);
+    rig.mute = true;
+    std::uint32_t number = 0;
+    for (const std::uint64_t time : {5'000'000ULL, 3ULL, ~0ULL, 0ULL}) {
+        rig.sendInput(encode(Status{.sequence = static_cast<std::uint16_t>(number),
+                                    .bootId = rig.ident.bootId,
+                                    .timeUs = time}));
+        rig.raise({.sequence = ++number, .timeUs = time, .code = event::kBoot}, true);
+        ASSERT_TRUE(link->keepAlive());
+        EXPECT_EQ(link->status()->timeUs, time);
+    }
+    EXPECT_EQ(link->takeEvents()->size(), 4U);
+    EXPECT_EQ(link->counters(), LinkCounters{});
+}
+
+TEST(RigLink, ACommandThatTheRigDidNotTakeIsSentAgainWhileItAnswers) {
+    ScriptedRig rig;
+    const auto link = opened(rig);
+    rig.refuseWrites = 2;
+    EXPECT_TRUE(link->command(Op::Flush));
+    EXPECT_EQ(rig.done, 1);
+    EXPECT_FALSE(link->lost());
+}
+
+TEST(RigLink, APauseThatIsTooLongIsCutShort) {
+    ScriptedRig rig;
+    const auto link = opened(rig);
+    rig.before = {Ack{.status = status::kBusy, .retryMs = 65535}};
+    EXPECT_TRUE(link->command(Op::Flush));
+    EXPECT_LE(rig.clock().now(), 500ms) << "the heartbeat is fed";
+    rig.noLastAck = true;
+    rig.before = {Ack{.status = status::kPending, .retryMs = 65535},
+                  Ack{.status = status::kPending, .retryMs = 65535},
+                  Ack{.status = status::kPending, .retryMs = 65535}};
+    const Nanoseconds begin = rig.clock().now();
+    (void)link->command(Op::Flush);
+    EXPECT_LE(rig.clock().now() - begin, 31s);
+}
+
+TEST(RigLink, AClaimThatHasLapsedIsALoss) {
+    ScriptedRig rig;
+    const auto link = opened(rig);
+    rig.session.owner = Owner::Lapsed;
+    const auto answer = link->command(Op::Ping);
+    ASSERT_FALSE(answer);
+    EXPECT_EQ(answer.error().kind, ErrorKind::Busy);
+    ASSERT_TRUE(link->lost());
+    ASSERT_TRUE(link->resume(rig));
+    EXPECT_TRUE(link->command(Op::Ping));
+    EXPECT_EQ(rig.session.owner, Owner::Alive);
 }
 
 TEST(RigLink, ReadsStatistics) {

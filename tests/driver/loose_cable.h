@@ -5,6 +5,8 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "driver/comeback.h"
@@ -22,7 +24,8 @@ public:
     bool over = false;                                 ///< nobody may touch it any more
     long touches = 0;                                  ///< although it is over
     int resets = 0, reopens = 0;
-    std::string serial;  ///< another one than the rig's
+    std::string serial;          ///< another one than the rig's
+    std::optional<Error> fault;  ///< of every call from now on
 
     [[nodiscard]] DeviceStrings strings() const override {
         DeviceStrings strings = rig_.strings();
@@ -62,6 +65,7 @@ private:
     auto through(Call call) -> decltype(call()) {
         touches += over ? 1 : 0;
         if (calls++ == breaksAt) broken_();
+        if (fault) return *fault;
         if (calls > breaksAt) return Error{ErrorKind::Device, "the cable is broken"};
         return call();
     }

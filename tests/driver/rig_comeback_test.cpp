@@ -1,5 +1,6 @@
 // A rig that is lost and comes back, at every call that a capture makes.
 
+#include "driver/protocol/fault_limit.h"
 #include "tests/driver/loose_cable.h"
 #include "tests/driver/planned_capture.h"
 
@@ -270,6 +271,15 @@ TEST_F(RigComeback, ARigThatHangsHasItsPortResetOnceAndIsLost) {
     EXPECT_EQ(plugs.losses.size(), 1U);
     EXPECT_TRUE(mentions(plugs.losses[0], "no ACK after 3 sends"));
     EXPECT_EQ(plugs.cables[0]->resets, 1);
+}
+
+TEST_F(RigComeback, AFaultOfTheStreamEndsTheCaptureAndNobodyIsAskedToComeBack) {
+    device.onStream = first(
+        1, [this](std::vector<Bytes>&) { plugs.cable().fault = streamFault("rig TEST-0001"); });
+    const auto capture = rig->capture(kRequest);
+    ASSERT_FALSE(capture);
+    EXPECT_TRUE(mentions(capture.error(), "three times in 10 s")) << capture.error().message;
+    EXPECT_TRUE(plugs.losses.empty());
 }
 
 TEST_F(RigComeback, TheClockGoesOnAndNeverBack) {

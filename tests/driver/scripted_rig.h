@@ -55,6 +55,8 @@ public:
     std::map<Op, std::uint16_t> refuse;  ///< final statuses
     std::uint32_t latency = 0;           ///< frames until SET_LED and SET_EXPOSURE take effect
     bool mute = false;                   ///< no STATUS reports
+    int refuseWrites = 0;                ///< the next ones stall
+    std::uint32_t promisedEvents = 0;    ///< newest_event_seq of STATUS, whatever there is
     RigState state = RigState::Idle;
     std::uint16_t fault = 0;
     std::function<void(FrameToSend&)> onFrame;          ///< each frame as it is exposed
@@ -64,6 +66,7 @@ public:
     // What it saw.
     std::vector<Command> log;  ///< every COMMAND report, repeats too
     int done = 0;              ///< commands carried out
+    int eventPages = 0;        ///< EVENTS that were read
     SetLed led{};
     Nanoseconds longestSilence{0};  ///< between commands while claimed
 
@@ -76,6 +79,8 @@ public:
     }
     void raise(const Event& event, bool asReport) {
         events_.push_back(event);
+        constexpr std::size_t kKept = 64;
+        if (events_.size() > kKept) events_.pop_front();
         if (asReport) sendInput(encode(event));
     }
     void pass(Nanoseconds time) { now_ += time; }
@@ -110,6 +115,10 @@ public:
     Result<void> write(const Report& report) override {
         const auto command = decodeCommand(report);
         if (!command) return command.error();
+        if (refuseWrites > 0) {
+            --refuseWrites;
+            return Error{ErrorKind::Device, "stalled"};
+        }
         log.push_back(*command);
         if (deaf) return {};
         if (loseCommands > 0) {
@@ -153,7 +162,7 @@ public:
             case ReportId::Limits: return encode(limits);
             case ReportId::Session: return encode(session);
             case ReportId::Stats: return encode(Stats{.commandsDone = 7});
-            case ReportId::Events: return encode(eventsPage());
+            case ReportId::Events: ++eventPages; return encode(eventsPage());
             case ReportId::LastAck:
                 if (noLastAck || !lastAck_) return Report{};
                 return encode(*lastAck_, ReportId::LastAck);
@@ -208,12 +217,13 @@ private:
     [[nodiscard]] Nanoseconds now() const override { return now_; }
 
     [[nodiscard]] Status status() {
-        return {.sequence = statusSequence_++,
-                .bootId = ident.bootId,
-                .state = state,
-                .newestEvent = events_.empty() ? 0 : events_.back().sequence,
-                .fault = fault,
-                .owner = session.owner};
+        return {
+            .sequence = statusSequence_++,
+            .bootId = ident.bootId,
+            .state = state,
+            .newestEvent = std::max(promisedEvents, events_.empty() ? 0 : events_.back().sequence),
+            .fault = fault,
+            .owner = session.owner};
     }
 
     [[nodiscard]] EventsPage eventsPage() const {

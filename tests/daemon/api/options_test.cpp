@@ -26,13 +26,14 @@ const std::string kSchema = "schema = \"gonio/goniod/1\"\n";
 TEST_F(DaemonOptionsFile, SaysWhereEverythingIs) {
     const auto options = read(kSchema +
                               "rig = \"usb:MD-7\"\nstore = \"/s\"\nsocket = \"/s/x.sock\"\n"
-                              "profile = \"/p.toml\"\ncomeback_seconds = 90\n");
+                              "profile = \"/p.toml\"\nrecord = \"/r\"\ncomeback_seconds = 90\n");
     ASSERT_TRUE(options) << options.error().message;
     EXPECT_EQ(options->rig, "usb:MD-7");
     EXPECT_EQ(options->store, "/s");
     EXPECT_EQ(options->socket, "/s/x.sock");
     EXPECT_EQ(options->profile, "/p.toml");
     EXPECT_EQ(options->comebackSeconds, 90);
+    EXPECT_EQ(options->record, "/r");
 }
 
 TEST_F(DaemonOptionsFile, EveryKeyMayBeAbsent) {
@@ -74,10 +75,12 @@ TEST(RigChoice, IsTheSimulatedOneAnyOnUsbOrOneOfThem) {
     EXPECT_EQ(parseRigChoice("usb")->serial, std::nullopt);
     EXPECT_EQ(parseRigChoice("usb:MD-7")->serial, "MD-7");
     EXPECT_EQ(parseRigChoice("usb:a:b")->serial, "a:b");
+    EXPECT_EQ(parseRigChoice("replay:/a b")->replay, "/a b");
+    EXPECT_TRUE(parseRigChoice("usb")->replay.empty());
 }
 
 TEST(RigChoice, AnythingElseIsAUsageErrorThatSaysWhatIsWanted) {
-    for (const char* rig : {"", "usb:", "usb3", "SIM", "sim "}) {
+    for (const char* rig : {"", "usb:", "usb3", "replay:", "SIM", "sim "}) {
         const auto choice = parseRigChoice(rig);
         ASSERT_FALSE(choice) << rig;
         EXPECT_EQ(choice.error().kind, ErrorKind::Usage);

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -43,6 +45,24 @@ TEST(Crc32c, MatchesReferenceAtEveryLengthAndSplit) {
         pieces.add(std::span(bytes).subspan(split));
         EXPECT_EQ(pieces.value(), crc32c(bytes));
     }
+}
+
+TEST(Crc32c, InstructionMatchesTheTableAtEveryLengthAroundItsBlocks) {
+    std::mt19937 random(2);
+    std::vector<std::uint8_t> bytes(4 * 3 * 1024 + 9);
+    for (auto& byte : bytes) byte = static_cast<std::uint8_t>(random());
+    const std::span<const std::uint8_t> all(bytes);
+    for (const std::size_t block : {0U, 1U, 2U, 3U, 4U}) {
+        for (std::size_t off = 0; off < 40; ++off) {
+            const std::size_t length = std::min(block * 3072 + off, all.size());
+            const std::size_t begin = std::min(off % 9, all.size() - length);
+            const auto some = all.subspan(begin, length);
+            EXPECT_EQ(crc32c(some), crc32cByTable(some)) << length;
+        }
+        const auto less = all.first(std::max<std::size_t>(block * 3072, 17) - 17);
+        EXPECT_EQ(crc32c(less), crc32cByTable(less)) << less.size();
+    }
+    EXPECT_EQ(crc32cByTable(all), crc32cBitwise(bytes));
 }
 
 TEST(Crc16, SeesEveryBitAndEveryTranspositionOfNeighbours) {

@@ -1,0 +1,44 @@
+#pragma once
+// A port of which all traffic with its rig is recorded (docs/recording.md).
+
+#include <memory>
+#include <optional>
+
+#include "daemon/engine/rig_port.h"
+#include "driver/recorder.h"
+
+namespace gonio::daemon {
+
+class RecordedPort : public RigPort {
+public:
+    RecordedPort(std::unique_ptr<RigPort> inner, std::unique_ptr<driver::Recorder> recorder)
+        : inner_(std::move(inner)), recorder_(std::move(recorder)) {}
+
+    [[nodiscard]] std::string_view kind() const override { return inner_->kind(); }
+    [[nodiscard]] Result<std::vector<RigListing>> list() override { return inner_->list(); }
+    [[nodiscard]] Result<driver::Transport*> open() override {
+        Result<driver::Transport*> opened = inner_->open();
+        if (!opened) {
+            driver::recordRefusal(*recorder_, opened.error(), Nanoseconds{0});
+            return opened;
+        }
+        return &transport_.emplace(**opened, *recorder_);
+    }
+    void close() override {
+        transport_.reset();
+        inner_->close();
+    }
+    [[nodiscard]] std::string placed() const override { return inner_->placed(); }
+    Result<bool> placeMirror(const proc::Wedge& wedge) override {
+        return inner_->placeMirror(wedge);
+    }
+    void describe(proc::SampleInfo& info) const override { inner_->describe(info); }
+    [[nodiscard]] SimPort* simulated() override { return inner_->simulated(); }
+
+private:
+    std::unique_ptr<RigPort> inner_;
+    std::unique_ptr<driver::Recorder> recorder_;
+    std::optional<driver::RecordingTransport> transport_;
+};
+
+}  // namespace gonio::daemon

@@ -1,0 +1,160 @@
+#include "driver/recorder.h"
+
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+#include <type_traits>
+#include <utility>
+
+#include "proc/core/log.h"
+
+namespace gonio::driver {
+namespace {
+
+namespace fs = std::filesystem;
+using Kind = RecordedCall::Kind;
+using Outcome = RecordedCall::Outcome;
+
+Error fileError(const fs::path& path, const std::string& what) {
+    return {ErrorKind::File, "record to " + path.string() + ": " + what};
+}
+
+/// Its size, or why it cannot be continued.
+Result<std::uint64_t> soundRecording(const fs::path& path) {
+    std::error_code problem;
+    const std::uint64_t bytes = fs::file_size(path, problem);
+    if (problem) return fileError(path, problem.message());
+    auto reader =
+        RecordingReader::open(std::make_unique<std::ifstream>(path, std::ios::binary), bytes);
+    if (!reader) return reader.error().in(path.string());
+    while (true) {
+        const auto call = reader->next();
+        if (!call) return call.error().in(path.string());
+        if (!*call) return bytes;
+    }
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Recorder>> Recorder::open(const fs::path& file) {
+    std::unique_ptr<Recorder> recorder(new Recorder(file));
+    std::error_code ignored;
+    if (fs::exists(file, ignored)) {
+        const Result<std::uint64_t> sound = soundRecording(file);
+        if (!sound) return sound.error();
+        recorder->bytes_ = *sound;
+    }
+    // Without a buffer of its own: what has been written is there whatever becomes of the program.
+    recorder->file_.rdbuf()->pubsetbuf(nullptr, 0);
+    recorder->file_.open(file, std::ios::binary | std::ios::app);
+    if (!recorder->file_) return fileError(file, std::strerror(errno));
+    if (recorder->bytes_ > 0) return recorder;
+    const auto header = recordingHeader();
+    recorder->buffer_.assign(header.begin(), header.end());
+    if (!recorder->write()) return fileError(file, std::strerror(errno));
+    return recorder;
+}
+
+bool Recorder::write() {
+    file_.write(reinterpret_cast<const char*>(buffer_.data()),  // NOLINT(*reinterpret*)
+                static_cast<std::streamsize>(buffer_.size()));
+    if (!file_) return false;
+    bytes_ += buffer_.size();
+    return true;
+}
+
+void Recorder::add(const RecordedCall& call) {
+    if (ended()) return;
+    const bool refused = call.kind == Kind::Open && call.outcome == Outcome::Failed;
+    if (refused && call.error.message == refusal_) return;
+    refusal_ = refused ? call.error.message : "";
+    buffer_.clear();
+    appendRecord(buffer_, call);
+    if (write()) return;
+    const std::string why = std::strerror(errno);
+    file_.close();
+    std::error_code ignored;
+    fs::resize_file(path_, bytes_, ignored);  // without the half of this record
+    log::warning("record to " + path_.string() + ": " + why + "; the record ends here at " +
+                 std::to_string(bytes_) + " bytes, the rig goes on");
+}
+
+RecordingTransport::RecordingTransport(Transport& inner, Recorder& recorder)
+    : inner_(inner), recorder_(recorder) {
+    call_.got = encodeStrings(inner_.strings());
+    call_.begin = call_.end = clock().now();
+    recorder_.add(call_);
+}
+
+void RecordingTransport::note(const Report& report) {
+    call_.got.assign(report.begin(), report.end());
+}
+
+template <class Bytes>
+void RecordingTransport::note(const std::optional<Bytes>& come) {
+    call_.outcome = come ? Outcome::Done : Outcome::Nothing;
+    if (come) call_.got.assign(come->begin(), come->end());
+}
+
+template <class Ask>
+auto RecordingTransport::recorded(Kind kind, BulkBytes sent, Ask ask) {
+    call_.kind = kind;
+    call_.outcome = Outcome::Done;
+    call_.sent.assign(sent.begin(), sent.end());
+    call_.got.clear();
+    call_.begin = clock().now();
+    auto answer = ask();
+    call_.end = clock().now();
+    if (!answer) {
+        call_.outcome = Outcome::Failed;
+        call_.error = answer.error();
+    } else if constexpr (!std::is_same_v<decltype(answer), Result<void>>) {
+        note(*answer);
+    }
+    recorder_.add(call_);
+    return answer;
+}
+
+RecordingTransport::~RecordingTransport() {
+    (void)recorded(Kind::Close, {}, [] { return Result<void>(); });
+}
+
+Result<void> RecordingTransport::write(const Report& report) {
+    return recorded(Kind::Write, report, [&] { return inner_.write(report); });
+}
+
+Result<void> RecordingTransport::setFeature(const Report& report) {
+    return recorded(Kind::SetFeature, report, [&] { return inner_.setFeature(report); });
+}
+
+Result<Report> RecordingTransport::getFeature(std::uint8_t id) {
+    return recorded(Kind::GetFeature, BulkBytes(&id, 1), [&] { return inner_.getFeature(id); });
+}
+
+Result<std::optional<Report>> RecordingTransport::readInput(Nanoseconds wait) {
+    return recorded(Kind::ReadInput, {}, [&] { return inner_.readInput(wait); });
+}
+
+Result<std::optional<BulkBytes>> RecordingTransport::readBulk(Nanoseconds wait) {
+    return recorded(Kind::ReadBulk, {}, [&] { return inner_.readBulk(wait); });
+}
+
+Result<void> RecordingTransport::resetStream() {
+    return recorded(Kind::ResetStream, {}, [&] { return inner_.resetStream(); });
+}
+
+Result<void> RecordingTransport::reopenReports() {
+    return recorded(Kind::ReopenReports, {}, [&] { return inner_.reopenReports(); });
+}
+
+Result<void> RecordingTransport::resetPort() {
+    return recorded(Kind::ResetPort, {}, [&] { return inner_.resetPort(); });
+}
+
+void recordRefusal(Recorder& recorder, const Error& error, Nanoseconds at) {
+    RecordedCall call{.kind = Kind::Open, .outcome = Outcome::Failed, .begin = at, .end = at};
+    call.error = error;
+    recorder.add(call);
+}
+
+}  // namespace gonio::driver

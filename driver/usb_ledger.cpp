@@ -1,0 +1,10 @@
+#include "driver/usb_ledger.h"
+
+namespace gonio::driver {
+
+UsbLedger& usbLedger() {
+    static UsbLedger ledger;
+    return ledger;
+}
+
+}  // namespace gonio::driver

@@ -1,0 +1,60 @@
+// Every row of the fault matrix through the real USB code, with the verdict that it has in process,
+// and without a file descriptor or a thread left behind.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "tests/faults/measurement.h"
+#include "tests/faults/mocked_rig.h"
+#include "tests/faults/row_seeds.h"
+
+namespace gonio::fault_test {
+namespace {
+
+std::size_t threads() {
+    const std::filesystem::directory_iterator all("/proc/self/task");
+    return static_cast<std::size_t>(std::distance(begin(all), end(all)));
+}
+
+/// Open device nodes and timers: the driver's alone, while the mocked bus has sockets and events.
+std::size_t devices() {
+    std::size_t count = 0;
+    for (const auto& file : std::filesystem::directory_iterator("/proc/self/fd")) {
+        std::error_code gone;
+        const std::string target = std::filesystem::read_symlink(file.path(), gone).string();
+        for (const char* part : {"/dev/bus/usb/", "/dev/pts/", "timerfd"})
+            count += target.find(part) != std::string::npos ? 1U : 0U;
+    }
+    return count;
+}
+
+class FaultRowOnUsb : public testing::TestWithParam<std::string> {};
+
+TEST_P(FaultRowOnUsb, HasTheSameVerdict) {
+    constexpr int kNightly = 20, kInCheck = 1;
+    constexpr int kSide = 256, kChunk = 16384;  // a ring of a hundred transfers, not of a thousand
+    const RigSetup setup = setupOf(kSide, kChunk);
+    Row row = readRow(GetParam());
+    row.seeds = kInCheck;
+    const Seeds seeds = seedsOf(row, kNightly);
+    for (int seed = seeds.first; seed <= seeds.last && !HasFailure(); ++seed) {
+        row.script.seed = static_cast<std::uint64_t>(seed);
+        const auto door = mocked(setup);
+        (void)door->open();
+        door->close();  // what the libraries keep for good, they have now
+        const std::size_t opened = devices(), running = threads();
+        const Outcome outcome = measure(*door, setup, row);
+        for (const std::string& complaint : complaints(row, outcome, undisturbed(setup)))
+            ADD_FAILURE() << "seed " << seed << ": " << complaint;
+        EXPECT_EQ(threads(), running) << "seed " << seed;
+        EXPECT_EQ(devices(), opened) << "seed " << seed;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Matrix, FaultRowOnUsb, testing::ValuesIn(rowNames()), [](const auto& row) {
+    return testName(row.param);
+});
+
+}  // namespace
+}  // namespace gonio::fault_test

@@ -1,0 +1,37 @@
+#pragma once
+// A measurement as an engine makes it, small: three brackets of three captures of two frames, the
+// next one armed ahead. A rig that is lost is looked for again; after another boot the bracket is
+// redone.
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "tests/faults/rig_door.h"
+#include "tests/faults/row.h"
+
+namespace gonio::fault_test {
+
+/// Pictures by plan step.
+using Pictures = std::map<std::uint64_t, std::vector<Image<std::uint16_t>>>;
+
+struct Outcome {
+    std::string verdict;
+    std::string said;  ///< the error, and what the comeback was told
+    Pictures pictures;
+    std::map<std::string, int> counts;
+    std::vector<int> events;            ///< their codes
+    std::vector<std::string> troubles;  ///< what no row may show
+    Nanoseconds detected{0};            ///< the longest
+};
+
+[[nodiscard]] Outcome measure(RigDoor& door, const RigSetup& setup, const Row& row);
+/// Of a rig that nothing disturbs.
+[[nodiscard]] const Pictures& undisturbed(const RigSetup& setup);
+
+/// What is not as the row wants it; empty: it has passed.
+[[nodiscard]] std::vector<std::string> complaints(const Row& row,
+                                                  const Outcome& outcome,
+                                                  const Pictures& undisturbed);
+
+}  // namespace gonio::fault_test

@@ -1,0 +1,40 @@
+#include "tests/faults/mocked_rig.h"
+
+#include <thread>
+
+#include "driver/usb_transport.h"
+#include "tests/device/mock_bus.h"
+
+namespace gonio::fault_test {
+namespace {
+
+class MockedRig : public RigDoor {
+public:
+    explicit MockedRig(const RigSetup& setup) : rig_(bus_, setup.config) {
+        rig_.live().with([](sim::FaultyUsb& usb) { placeSample(usb.device()); });
+        rig_.live().warmUp(setup.window);
+    }
+    Result<driver::Transport*> open() override {
+        transport_.reset();
+        auto opened = driver::openUsb();
+        if (!opened) return opened.error();
+        transport_ = std::move(*opened);
+        return transport_.get();
+    }
+    void close() override { transport_.reset(); }
+    void pause(Nanoseconds time) override { std::this_thread::sleep_for(time); }
+    void with(const std::function<void(sim::FaultyUsb&)>& use) override { rig_.live().with(use); }
+
+private:
+    device_test::MockBus bus_;
+    device_test::MockRig rig_;
+    std::unique_ptr<driver::Transport> transport_;
+};
+
+}  // namespace
+
+std::unique_ptr<RigDoor> mocked(const RigSetup& setup) {
+    return std::make_unique<MockedRig>(setup);
+}
+
+}  // namespace gonio::fault_test

@@ -1,0 +1,32 @@
+// Every row of the fault matrix on the in-process door.
+
+#include <gtest/gtest.h>
+
+#include "tests/faults/measurement.h"
+#include "tests/faults/row_seeds.h"
+
+namespace gonio::fault_test {
+namespace {
+
+class FaultRow : public testing::TestWithParam<std::string> {};
+
+TEST_P(FaultRow, HasItsVerdictInProcess) {
+    constexpr int kNightly = 1000;
+    const RigSetup setup = smallSetup();
+    Row row = readRow(GetParam());
+    const Seeds seeds = seedsOf(row, kNightly);
+    for (int seed = seeds.first; seed <= seeds.last && !HasFailure(); ++seed) {
+        row.script.seed = static_cast<std::uint64_t>(seed);
+        const auto door = inProcess(setup);
+        const Outcome outcome = measure(*door, setup, row);
+        for (const std::string& complaint : complaints(row, outcome, undisturbed(setup)))
+            ADD_FAILURE() << "seed " << seed << ": " << complaint;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Matrix, FaultRow, testing::ValuesIn(rowNames()), [](const auto& row) {
+    return testName(row.param);
+});
+
+}  // namespace
+}  // namespace gonio::fault_test

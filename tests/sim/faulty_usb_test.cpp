@@ -1,0 +1,180 @@
+#include "sim/faults/faulty_usb.h"
+
+#include <gtest/gtest.h>
+
+#include "driver/protocol/chunk.h"
+#include "driver/protocol/reports.h"
+
+namespace gonio::sim {
+namespace {
+
+using namespace std::chrono_literals;
+using driver::Op;
+
+constexpr std::size_t kRoom = 1U << 20;
+
+/// A rig with a session, one frame of two chunks of pixels armed and taken.
+class FaultyUsbTest : public testing::Test {
+protected:
+    void play(const std::string& text) {
+        auto script = FaultScript::parse(text);
+        ASSERT_TRUE(script) << script.error().message;
+        usb.play(std::move(*script));
+    }
+    void send(Op op, const driver::Arguments& arguments) {
+        const auto report = driver::encode(driver::Command{
+            .sessionLow = 7, .sequence = ++sequence, .op = op, .arguments = arguments});
+        usb.interruptOut(report);
+    }
+    void takeFrame() {
+        if (sequence == 0) {
+            usb.device().setFeature(driver::encode(driver::SessionSet{.sessionId = 7}));
+            send(Op::SetFormat,
+                 driver::encode(driver::SetFormat{.format = driver::PixelFormat::Mono16,
+                                                  .x = 0,
+                                                  .y = 0,
+                                                  .width = 512,
+                                                  .height = 512,
+                                                  .binning = 1}));
+        }
+        send(Op::Arm, driver::encode(driver::Arm{.captureId = ++capture, .frames = 1}));
+        usb.advanceTo(usb.now() + 1s);
+    }
+    std::vector<ChunkBytes> chunks() {
+        std::vector<ChunkBytes> all;
+        while (true) {
+            UsbReply reply = usb.bulkIn(kRoom);
+            if (reply.answer != UsbAnswer::Done) return all;
+            all.push_back(std::move(reply.data));
+        }
+    }
+    static driver::ChunkFault faultOf(const ChunkBytes& chunk) {
+        return driver::checkChunk(chunk).fault;
+    }
+
+    FaultyUsb usb{{.errors = {}}};
+    std::uint16_t sequence = 0;
+    std::uint64_t capture = 0;
+};
+
+TEST_F(FaultyUsbTest, WithoutAScriptNothingIsWrong) {
+    takeFrame();
+    const auto all = chunks();
+    ASSERT_EQ(all.size(), 4U);
+    for (const ChunkBytes& chunk : all) EXPECT_EQ(faultOf(chunk), driver::ChunkFault::None);
+}
+
+TEST_F(FaultyUsbTest, ChunksAreLostDoubledAndSwapped) {
+    play(
+        "on chunk 1 of frame 1 lose chunk\n"
+        "on chunk 2 of frame 2 duplicate chunk\n"
+        "on chunk 1 of frame 3 swap chunks\n");
+    takeFrame();
+    EXPECT_EQ(chunks().size(), 3U);
+    takeFrame();
+    const auto doubled = chunks();
+    ASSERT_EQ(doubled.size(), 5U);
+    EXPECT_EQ(doubled[2], doubled[3]);
+    takeFrame();
+    const auto swapped = chunks();
+    ASSERT_EQ(swapped.size(), 4U);
+    EXPECT_EQ(driver::checkChunk(swapped[1]).chunk.header.chunkIndex, 2);
+    EXPECT_EQ(driver::checkChunk(swapped[2]).chunk.header.chunkIndex, 1);
+    EXPECT_EQ(usb.tally().of(FaultKind::SwapChunks), 1);
+}
+
+TEST_F(FaultyUsbTest, BitsFlipWhereTheyAreToldTo) {
+    play(
+        "on chunk 1 of frame 1 flip 1 bits in payload\n"
+        "on chunk 2 of frame 1 flip 1 bits in header\n"
+        "on chunk 1 of frame 2 burst of 32 bits in payload\n");
+    takeFrame();
+    const auto flipped = chunks();
+    EXPECT_EQ(faultOf(flipped[1]), driver::ChunkFault::PayloadCrc);
+    EXPECT_TRUE(faultOf(flipped[2]) == driver::ChunkFault::HeaderCrc ||
+                faultOf(flipped[2]) == driver::ChunkFault::Magic);
+    takeFrame();
+    EXPECT_EQ(faultOf(chunks()[1]), driver::ChunkFault::PayloadCrc);
+}
+
+TEST_F(FaultyUsbTest, AStallLastsUntilItIsCleared) {
+    play("on chunk 2 stall bulk\n");
+    takeFrame();
+    EXPECT_EQ(chunks().size(), 1U);
+    EXPECT_EQ(usb.bulkIn(kRoom).answer, UsbAnswer::Stall);
+    usb.control({.requestType = 2, .request = 1, .index = UsbDevice::kBulkIn});
+    EXPECT_EQ(chunks().size(), 2U);  // one was half sent
+}
+
+TEST_F(FaultyUsbTest, APulledCableIsAnErrorThenNothingIsThere) {
+    play("on chunk 2 unplug for 1s\n");
+    takeFrame();
+    EXPECT_EQ(usb.bulkIn(kRoom).answer, UsbAnswer::Done);
+    EXPECT_EQ(usb.bulkIn(kRoom).answer, UsbAnswer::Error);
+    EXPECT_EQ(usb.bulkIn(kRoom).answer, UsbAnswer::Gone);
+    EXPECT_EQ(usb.control({.requestType = 0x80}).answer, UsbAnswer::Gone);
+    EXPECT_EQ(usb.pulls(), 1);
+    usb.advanceTo(usb.now() + 1s);
+    EXPECT_TRUE(usb.plugged());
+}
+
+TEST_F(FaultyUsbTest, AHungRigNaksUntilItsPortIsReset) {
+    play("at 0s hang until reset\n");
+    EXPECT_EQ(usb.control({.requestType = 0x80, .length = 2}).answer, UsbAnswer::Nak);
+    EXPECT_EQ(usb.interruptIn().answer, UsbAnswer::Nak);
+    usb.resetPort();
+    EXPECT_EQ(usb.control({.requestType = 0x80, .length = 2}).answer, UsbAnswer::Done);
+}
+
+TEST_F(FaultyUsbTest, ALateAckComesWhenItIsDue) {
+    play("on command 1 delay ack 150ms\n");
+    const auto acks = [&] {
+        int count = 0;
+        for (UsbReply reply = usb.interruptIn(); reply.answer == UsbAnswer::Done;
+             reply = usb.interruptIn())
+            count += reply.data[0] == static_cast<std::uint8_t>(driver::ReportId::Ack) ? 1 : 0;
+        return count;
+    };
+    send(Op::Ping, {});
+    EXPECT_EQ(acks(), 0);
+    usb.advanceTo(usb.now() + 149ms);
+    EXPECT_EQ(acks(), 0);
+    usb.advanceTo(usb.now() + 1ms);
+    EXPECT_EQ(acks(), 1);
+}
+
+TEST_F(FaultyUsbTest, AnotherRigHasAnotherSerialNumberAndKnowsNothing) {
+    takeFrame();
+    play("at 0s plug as SIM-0666 for 1s\n");
+    EXPECT_EQ(usb.usb().device().serial(), "SIM-0666");
+    EXPECT_EQ(chunks().size(), 0U);
+    usb.advanceTo(usb.now() + 1s);
+    EXPECT_EQ(usb.usb().device().serial(), "SIM-0001");
+}
+
+TEST_F(FaultyUsbTest, TheSameSeedSpoilsTheSameChunks) {
+    const auto spoiled = [](std::uint64_t seed) {
+        FaultScript script = FaultScript::parse("with chance 0.3 per chunk lose chunk\n").value();
+        script.seed = seed;
+        FaultPlayer player(script, Nanoseconds(0));
+        std::string pattern;
+        for (int i = 0; i < 64; ++i) pattern += player.chunkSent({}).empty() ? '.' : 'x';
+        return pattern;
+    };
+    EXPECT_EQ(spoiled(3), spoiled(3));
+    EXPECT_NE(spoiled(3), spoiled(4));
+}
+
+TEST_F(FaultyUsbTest, AFrameCanBeWellFormedAndWrong) {
+    play("on frame 1 black frame\n");
+    takeFrame();
+    const auto black = chunks();
+    for (std::size_t i = driver::kChunkHeaderBytes; i < black[1].size(); ++i)
+        ASSERT_EQ(black[1][i], 0);
+    EXPECT_EQ(faultOf(black[1]), driver::ChunkFault::None);
+    takeFrame();
+    EXPECT_NE(chunks()[1][driver::kChunkHeaderBytes], 0);
+}
+
+}  // namespace
+}  // namespace gonio::sim

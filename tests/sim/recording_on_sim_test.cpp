@@ -1,0 +1,271 @@
+// What passes between host and rig, recorded and played back: the same frames, anomalies and errors
+// without a rig. Recordings that are cut off, damaged or hostile.
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "driver/protocol/crc.h"
+#include "driver/protocol/wire.h"
+#include "driver/recorder.h"
+#include "driver/replay.h"
+#include "driver/rig.h"
+#include "sim/in_process.h"
+
+namespace gonio {
+namespace {
+
+using namespace driver;
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kSession = 0x1122334455667788;
+constexpr Window kWindow{.x = 512, .y = 384, .size = {64, 64}, .binning = 1};
+
+CaptureRequest dark(std::uint64_t planStep, int frames = 4) {
+    return {.planStep = planStep,
+            .led = std::nullopt,
+            .levels = {},
+            .exposure = Microseconds(320),
+            .frames = frames};
+}
+
+/// Loses and damages transfers by a seed, and is gone after so many.
+class BadCable : public Transport {
+public:
+    BadCable(Transport& inner, unsigned seed, int transfers)
+        : inner_(inner), random_(seed), left_(transfers) {}
+    [[nodiscard]] DeviceStrings strings() const override { return inner_.strings(); }
+    [[nodiscard]] const Clock& clock() const override { return inner_.clock(); }
+    Result<void> write(const Report& report) override {
+        if (left_ < 0) return gone();
+        return inner_.write(report);
+    }
+    Result<void> setFeature(const Report& report) override { return inner_.setFeature(report); }
+    [[nodiscard]] Result<Report> getFeature(std::uint8_t id) override {
+        return inner_.getFeature(id);
+    }
+    [[nodiscard]] Result<std::optional<Report>> readInput(Nanoseconds wait) override {
+        return inner_.readInput(wait);
+    }
+    [[nodiscard]] Result<std::optional<BulkBytes>> readBulk(Nanoseconds wait) override {
+        auto transfer = inner_.readBulk(wait);
+        if (!transfer || !*transfer) return transfer;
+        if (--left_ < 0) return gone();
+        const auto fate = random_() % 10;
+        if (fate == 0) return std::optional<BulkBytes>{};
+        if (fate > 1) return transfer;
+        damaged_.assign((*transfer)->begin(), (*transfer)->end());
+        damaged_[random_() % damaged_.size()] ^= 4;
+        return std::optional<BulkBytes>(damaged_);
+    }
+    Result<void> resetStream() override { return inner_.resetStream(); }
+    Result<void> reopenReports() override { return inner_.reopenReports(); }
+    Result<void> resetPort() override { return inner_.resetPort(); }
+
+private:
+    static Error gone() { return {ErrorKind::Device, "the cable was pulled"}; }
+    Transport& inner_;
+    std::mt19937 random_;
+    int left_;
+    std::vector<std::uint8_t> damaged_;
+};
+
+/// What a host sees of its rig, as text and pixels.
+struct Story {
+    std::string text;
+    std::vector<Image<std::uint16_t>> pictures;
+    bool operator==(const Story&) const = default;
+};
+
+Story hostOf(Transport& transport, std::uint64_t session = kSession, std::uint64_t planStep = 1) {
+    Story story;
+    auto rig = Rig::open(transport, session);
+    if (!rig) return {.text = rig.error().message, .pictures = {}};
+    story.text = rig->identify().serial + "\n";
+    if (auto set = rig->configure(kWindow); !set) story.text += set.error().message + "\n";
+    for (std::uint64_t step = planStep; step < planStep + 4; ++step) {
+        const ArmAhead ahead{.next = dark(step + 1)};
+        const auto capture = rig->capture(dark(step), step % 2 == 1 ? ahead : ArmAhead{});
+        if (!capture) {
+            story.text += capture.error().message + "\n";
+            continue;
+        }
+        for (const Frame& frame : *capture) story.pictures.push_back(frame.pixels);
+        story.text += capture->anomalies.text() + ", " + std::to_string(capture->resends) +
+                      " and " + std::to_string(capture->recaptures) + " again\n";
+    }
+    if (const auto events = rig->link().takeEvents())
+        story.text += std::to_string(events->size()) + " events\n";
+    return story;
+}
+
+class Recording : public testing::Test {
+protected:
+    Recording() { fs::remove(file_); }
+    ~Recording() override { fs::remove(file_); }
+
+    Story recorded(unsigned seed, int transfers = 1'000'000) {
+        sim::InProcessDoor door({.serial = "SIM-0007", .seed = 3, .errors = {}});
+        BadCable cable(door, seed, transfers);
+        auto recorder = Recorder::open(file_);
+        EXPECT_TRUE(recorder) << recorder.error().message;
+        RecordingTransport transport(cable, **recorder);
+        return hostOf(transport);
+    }
+    [[nodiscard]] std::string bytes() const {
+        std::ifstream in(file_, std::ios::binary);
+        return {std::istreambuf_iterator<char>(in), {}};
+    }
+    static Result<std::unique_ptr<Replay>> played(const std::string& bytes) {
+        return Replay::open([&] { return std::make_unique<std::istringstream>(bytes); },
+                            bytes.size());
+    }
+
+    fs::path file_ = fs::temp_directory_path() / ("gonio_recording_" + std::to_string(getpid()));
+};
+
+TEST_F(Recording, OfACaptureWithFaultsGivesTheSameFramesAnomaliesAndErrors) {
+    for (const unsigned seed : {1U, 2U, 3U, 4U, 5U}) {
+        SCOPED_TRACE(seed);
+        fs::remove(file_);
+        const Story seen = recorded(seed);
+        EXPECT_NE(seen.text.find("lost chunk"), std::string::npos) << seen.text;
+        auto replay = Replay::open(file_);
+        ASSERT_TRUE(replay) << replay.error().message;
+        EXPECT_EQ((*replay)->nextSession(), kSession);
+        auto transport = (*replay)->openRig();
+        ASSERT_TRUE(transport);
+        const Story again = hostOf(**transport);
+        EXPECT_EQ(again.text, seen.text);
+        EXPECT_EQ(again.pictures, seen.pictures);
+    }
+}
+
+TEST_F(Recording, OfARigThatWentAwayEndsInTheSameErrors) {
+    const Story seen = recorded(1, 40);
+    EXPECT_NE(seen.text.find("the cable was pulled"), std::string::npos) << seen.text;
+    auto replay = Replay::open(file_);
+    ASSERT_TRUE(replay) << replay.error().message;
+    EXPECT_EQ(hostOf(**(*replay)->openRig()), seen);
+}
+
+TEST_F(Recording, HoldsOneOpeningAfterTheOther) {
+    const Story first = recorded(1, 40), second = recorded(2);
+    {
+        auto recorder = Recorder::open(file_);
+        ASSERT_TRUE(recorder);
+        for (int i = 0; i < 3; ++i)
+            recordRefusal(**recorder, {ErrorKind::NoRig, "not there"}, Nanoseconds(5));
+    }
+    auto replay = Replay::open(file_);
+    ASSERT_TRUE(replay) << replay.error().message;
+    EXPECT_EQ((*replay)->serial(), "SIM-0007");
+    EXPECT_EQ(hostOf(**(*replay)->openRig()), first);
+    EXPECT_EQ(hostOf(**(*replay)->openRig()), second);
+    EXPECT_EQ((*replay)->openRig().error().message, "not there") << "once for all three";
+    const auto over = (*replay)->openRig();
+    ASSERT_FALSE(over);
+    EXPECT_EQ(over.error().kind, ErrorKind::NoRig);
+}
+
+TEST_F(Recording, SaysWhereTheHostDoesSomethingElse) {
+    (void)recorded(1);
+    auto replay = Replay::open(file_);
+    ASSERT_TRUE(replay);
+    auto transport = (*replay)->openRig();
+    const Story other = hostOf(**transport, kSession, 9);
+    EXPECT_NE(other.text.find("replay: record "), std::string::npos) << other.text;
+    EXPECT_NE(other.text.find("wanted: write 20 88 77 66 55 "), std::string::npos) << other.text;
+    EXPECT_NE(other.text.find("; seen: write 20 88 77 66 55 "), std::string::npos) << other.text;
+    EXPECT_TRUE(other.pictures.empty());
+    const auto after = (*transport)->getFeature(1);
+    ASSERT_FALSE(after);
+    EXPECT_EQ(after.error().kind, ErrorKind::Device);
+}
+
+TEST_F(Recording, OfTheFirstMomentsIsRefusedWhereverItIsCutOffOrDamaged) {
+    {
+        sim::InProcessDoor door({.errors = {}});
+        auto recorder = Recorder::open(file_);
+        ASSERT_TRUE(recorder);
+        RecordingTransport transport(door, **recorder);
+        (void)transport.getFeature(1);
+        (void)transport.readInput(std::chrono::seconds(1));
+        (void)transport.readBulk(Nanoseconds(0));
+    }
+    const std::string whole = bytes();
+    ASSERT_TRUE(played(whole));
+    int refused = 0;
+    for (std::size_t length = 0; length < whole.size(); ++length) {
+        const auto cut = played(whole.substr(0, length));
+        if (cut) continue;  // between two records
+        EXPECT_EQ(cut.error().kind, ErrorKind::File);
+        EXPECT_NE(cut.error().message.find("byte "), std::string::npos) << cut.error().message;
+        ++refused;
+    }
+    EXPECT_EQ(static_cast<std::size_t>(refused), whole.size() - 5) << "5 records, the last whole";
+    for (std::size_t at = 0; at < whole.size(); ++at) {
+        std::string flipped = whole;
+        flipped[at] = static_cast<char>(flipped[at] ^ 16);
+        EXPECT_FALSE(played(flipped)) << at;
+    }
+}
+
+TEST_F(Recording, OfAHostileLengthIsRefusedByItsOffset) {
+    const auto header = recordingHeader();
+    std::string bytes(header.begin(), header.end());
+    for (const char* length : {"\xFF\xFF\xFF\xFF", "\xFF\xFF\xFF\x03"}) {
+        const auto refused = played(bytes + std::string(length, 4) + "abc");
+        ASSERT_FALSE(refused);
+        EXPECT_NE(refused.error().message.find("byte 16, record 1"), std::string::npos)
+            << refused.error().message;
+    }
+    std::vector<std::uint8_t> body(26 + 7, 0);
+    body[0] = 3;  // a write of 7 bytes
+    driver::put(std::span(body), 18, std::uint32_t{7});
+    std::vector<std::uint8_t> record(4);
+    driver::put(std::span(record), 0, static_cast<std::uint32_t>(body.size()));
+    record.insert(record.end(), body.begin(), body.end());
+    record.resize(record.size() + 4);
+    driver::put(std::span(record), record.size() - 4, crc32c(body));
+    const auto refused = played(bytes + std::string(record.begin(), record.end()));
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find("makes no sense"), std::string::npos);
+}
+
+TEST_F(Recording, ThatIsNoneIsNotContinued) {
+    std::ofstream(file_) << "a letter to a friend";
+    const auto refused = Recorder::open(file_);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().kind, ErrorKind::File);
+    EXPECT_EQ(bytes(), "a letter to a friend");
+}
+
+TEST_F(Recording, EndsWhereTheDiskIsFullAndTheRunGoesOn) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    rlimit before{};
+    getrlimit(RLIMIT_FSIZE, &before);
+    const rlimit small{.rlim_cur = 60'000, .rlim_max = before.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &small);
+    const Story seen = recorded(1);
+    setrlimit(RLIMIT_FSIZE, &before);
+    EXPECT_EQ(seen.pictures.size(), 16U);
+    EXPECT_LE(bytes().size(), 60'000U);
+    EXPECT_GT(bytes().size(), 20'000U);
+    auto replay = Replay::open(file_);
+    ASSERT_TRUE(replay) << replay.error().message << ": only whole records are kept";
+    const Story again = hostOf(**(*replay)->openRig());
+    EXPECT_NE(again.text.find("here the recording of this opening ends"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace gonio
