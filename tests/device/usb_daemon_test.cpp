@@ -88,6 +88,21 @@ protected:
         });
         return client;
     }
+    /// A measurement in whose middle the rig is unplugged, and comes back in this way.
+    void measureInterrupted(const std::string& name, sim::FaultKind comesBack) {
+        const pid_t client = begin({"--json", "measure", name, "--effort", "draft"});
+        await("the states' frames",
+              [](const Json& now) { return now["job"].is_object() && now["job"]["step"] >= 21; });
+        rig.unplug();
+        awaitState("interrupted");
+        cause({.kind = comesBack});
+        EXPECT_EQ(end(client), 0) << test::textOf(gonio / "client.err");
+        const Json measured = Json::parse(test::textOf(gonio / "client.out"));
+        const Json& gaps = measured["interruptions"];
+        ASSERT_EQ(gaps.size(), 1U) << gaps;
+        EXPECT_EQ(gaps[0]["same_boot"], comesBack == sim::FaultKind::Plug);
+        EXPECT_EQ(ask({"info", measured["file"]})["interruptions"], 1);
+    }
     /// Data of the kept events of this type.
     [[nodiscard]] std::string eventsOf(const std::string& type) const {
         auto book = daemon::Logbook::open(gonio / "store");
@@ -169,8 +184,8 @@ std::string csvOf(const test::Program& gonio, const std::string& sample) {
     return test::rowsOfCsv(file);
 }
 
-/// The same on the simulated rig in the daemon's own process, twice.
-std::array<std::string, 2> inProcess() {
+/// The same on the simulated rig in the daemon's own process, three times.
+std::array<std::string, 3> inProcess() {
     const test::Program gonio;
     const test::RunningDaemon daemon(gonio);
     const auto run = [&](const std::vector<std::string>& arguments) {
@@ -193,9 +208,13 @@ std::array<std::string, 2> inProcess() {
         run({"calibrate", tile, "-q"});
     }
     run({"sim", "place", kSample, "-q"});
-    run({"measure", "x", "--effort", "draft", "-q"});
-    run({"measure", "y", "--effort", "draft", "-q"});
-    return {csvOf(gonio, "x"), csvOf(gonio, "y")};
+    std::array<std::string, 3> all;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const std::string name(1, "xyz"[i]);
+        run({"measure", name, "--effort", "draft", "-q"});
+        all[i] = csvOf(gonio, name);
+    }
+    return all;
 }
 
 TEST_F(Lab, MeasuresOnUsbWhatItMeasuresInProcess) {
@@ -234,21 +253,12 @@ TEST_F(Lab, MeasuresOnUsbWhatItMeasuresInProcess) {
               << " s on the rig, " << measured["compute_seconds"] << " s computing, " << frames
               << " s of processor time until the last frame\n";
 
-    const pid_t again = begin({"--json", "measure", "y", "--effort", "draft"});
-    await("the states' frames",
-          [](const Json& now) { return now["job"].is_object() && now["job"]["step"] >= 21; });
-    rig.unplug();
-    awaitState("interrupted");
-    rig.plug();
-    EXPECT_EQ(end(again), 0) << test::textOf(gonio / "client.err");
-    const Json interrupted = Json::parse(test::textOf(gonio / "client.out"));
-    ASSERT_EQ(interrupted["interruptions"].size(), 1U) << interrupted["interruptions"];
-    EXPECT_EQ(interrupted["interruptions"][0]["same_boot"], true);
-    EXPECT_EQ(ask({"info", interrupted["file"]})["interruptions"], 1);
-
+    measureInterrupted("y", sim::FaultKind::Plug);
+    measureInterrupted("z", sim::FaultKind::PlugRebooted);
     const auto wanted = inProcess();
     EXPECT_TRUE(csvOf(gonio, "x") == wanted[0]);  // megabytes: no one reads their difference
-    EXPECT_TRUE(csvOf(gonio, "y") == wanted[1]) << "what the unplug has cost is time";
+    EXPECT_TRUE(csvOf(gonio, "y") == wanted[1]) << "all that an unplug costs is time";
+    EXPECT_TRUE(csvOf(gonio, "z") == wanted[2]) << "no bracket mixes boots, and each is whole";
     EXPECT_EQ(daemon.end(), 0) << daemon.log();
     EXPECT_FALSE(lit());
 }
