@@ -102,7 +102,7 @@ void Engine::Monitor::keep(driver::Interruption interruption) {
 bool Engine::Monitor::mayWait() {
     const Nanoseconds now = engine_.world_.clock.now();
     if (!gap_) gap_ = now;
-    return Seconds(now - *gap_) < engine_.world_.patience;
+    return !captured_ && Seconds(now - *gap_) < engine_.world_.patience;
 }
 
 }  // namespace gonio::daemon

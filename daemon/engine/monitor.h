@@ -34,7 +34,10 @@ public:
         return cancelled();
     }
     Result<void> ask(const std::string& what) override;
-    void captured() override { engine_.advance(EngineEvent::Captured); }
+    void captured() override {
+        captured_ = true;
+        engine_.advance(EngineEvent::Captured);
+    }
     void alive() override {
         gap_.reset();
         engine_.world_.alive();
@@ -80,6 +83,7 @@ private:
     bool ended_ = false;
     std::optional<proc::Progress> outlook_;
     std::vector<driver::Interruption> interruptions_;
+    bool captured_ = false;           ///< what is left needs no rig
     std::optional<Nanoseconds> gap_;  ///< when the one at hand began
 };
 
