@@ -47,7 +47,6 @@ Result<void> Assembler::expectNext(const ExpectedCapture& capture) {
     if (!frames) return frames.error();
     next_.giveBack(memory_);
     next_ = std::move(*frames);
-    memory_.provide(capture.frameBytes, next_.most());
     return {};
 }
 

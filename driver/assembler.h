@@ -4,7 +4,7 @@
 // (capture_frames.h), and a count of every anomaly. A next capture may be expected beside it, whose
 // frames come while the present one's are still repaired: a chunk of it in its turn says that
 // whatever the present one lacks is lost. Before expect(): every chunk is stale. The memory of the
-// frames waits here from expect() on, and is used again once it is given back.
+// present one's frames waits here from expect() on, and is used again once it is given back.
 
 #include <cstdint>
 #include <optional>

@@ -368,10 +368,13 @@ void Rig::provideMemory(const CaptureRequest& request, const ArmAhead& ahead, bo
     const auto kept = [&](int n) { return sink ? held(n) : static_cast<std::size_t>(n); };
     const Size size = geometry_->window.sent();
     const std::size_t limit = CaptureFrames::kMaxOpenBytes;
-    assembler_.provide(geometry_->frameBytes,
-                       std::min(held(frames) + held(next), limit / geometry_->frameBytes));
-    pixels_.provide(
-        size, std::min(kept(frames) + kept(next), limit / (size.pixels() * sizeof(std::uint16_t))));
+    // Frames of the present capture are read as they become whole: beside all of the next, two are
+    // on their way. What a sink leaves of the present is the next's.
+    const std::size_t wire = std::max(held(frames), held(next)) + 2;
+    const std::size_t pixels =
+        sink ? std::max(kept(frames), kept(next)) : kept(frames) + kept(next);
+    assembler_.provide(geometry_->frameBytes, std::min(wire, limit / geometry_->frameBytes));
+    pixels_.provide(size, std::min(pixels, limit / (size.pixels() * sizeof(std::uint16_t))));
 }
 
 /// Idle, with nothing on its way: not of the last attempt, nor of what was armed ahead.

@@ -5,12 +5,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "driver/udev_rule.h"
 #include "driver/usb_transport.h"
 
+struct libusb_config_descriptor;
 struct libusb_context;
 struct libusb_device;
 struct libusb_device_handle;
@@ -54,6 +56,10 @@ struct OpenedRig {
                                                      const UsbSelection& wanted);
 /// Opens and reads the strings; claims nothing yet.
 [[nodiscard]] Result<OpenedRig> openRig(const FoundRig& found);
+/// From descriptors of any origin.
+[[nodiscard]] RigInterfaces interfacesOf(const libusb_config_descriptor& config);
+/// The text of a string descriptor as it came; empty where it is none.
+[[nodiscard]] std::string textIn(std::span<const std::uint8_t> descriptor);
 /// It has the descriptors of a SuperSpeed device, whatever the port gives it.
 [[nodiscard]] bool canSuperSpeed(const OpenedRig& rig);
 /// Takes the stream interface, from a kernel driver too.

@@ -42,29 +42,6 @@ std::string knownSerial(const std::string& place) {
     return serial;
 }
 
-RigInterfaces interfacesOf(const libusb_config_descriptor& config) {
-    RigInterfaces found;
-    for (int i = 0; i < config.bNumInterfaces; ++i) {
-        const libusb_interface& interface = config.interface[i];
-        if (interface.num_altsetting < 1) continue;
-        const libusb_interface_descriptor& main = interface.altsetting[0];
-        if (main.bInterfaceClass == LIBUSB_CLASS_HID) found.hid = main.bInterfaceNumber;
-        if (main.bInterfaceClass != LIBUSB_CLASS_VENDOR_SPEC ||
-            main.bInterfaceSubClass != kStreamSubClass ||
-            main.bInterfaceProtocol != kStreamProtocol)
-            continue;
-        for (int e = 0; e < main.bNumEndpoints; ++e) {
-            const libusb_endpoint_descriptor& endpoint = main.endpoint[e];
-            const bool in = (endpoint.bEndpointAddress & LIBUSB_ENDPOINT_IN) != 0;
-            if (!in || (endpoint.bmAttributes & 3) != LIBUSB_TRANSFER_TYPE_BULK) continue;
-            found.stream = main.bInterfaceNumber;
-            found.bulkIn = endpoint.bEndpointAddress;
-            found.packet = endpoint.wMaxPacketSize & 0x7FFU;
-        }
-    }
-    return found;
-}
-
 /// Mbit/s; 0: unknown.
 int speedOf(libusb_device* device) {
     switch (libusb_get_device_speed(device)) {
@@ -80,12 +57,13 @@ int speedOf(libusb_device* device) {
 RigInterfaces interfacesOf(libusb_device* device) {
     libusb_config_descriptor* config = nullptr;
     if (libusb_get_active_config_descriptor(device, &config) != 0) return {};
-    const RigInterfaces found = interfacesOf(*config);
+    const RigInterfaces found = driver::interfacesOf(*config);
     libusb_free_config_descriptor(config);
     return found;
 }
 
 std::string stringOf(libusb_device_handle* handle, std::uint8_t index) {
+    if (index == 0) return {};  // the device has no such string
     constexpr std::uint16_t kEnglish = 0x0409;
     std::array<std::uint8_t, 255> raw{};
     const int n = libusb_control_transfer(handle,
@@ -96,17 +74,45 @@ std::string stringOf(libusb_device_handle* handle, std::uint8_t index) {
                                           raw.data(),
                                           static_cast<std::uint16_t>(raw.size()),
                                           kControlMs);
-    if (n < 2 || raw[0] < 2 || raw[1] != LIBUSB_DT_STRING) return {};
+    return n < 0 ? std::string() : textIn(std::span(raw).first(static_cast<std::size_t>(n)));
+}
+
+}  // namespace
+
+RigInterfaces interfacesOf(const libusb_config_descriptor& config) {
+    RigInterfaces found;
+    for (int i = 0; i < config.bNumInterfaces; ++i) {
+        const libusb_interface& interface = config.interface[i];
+        if (interface.num_altsetting < 1) continue;
+        const libusb_interface_descriptor& main = interface.altsetting[0];
+        const bool hid = main.bInterfaceClass == LIBUSB_CLASS_HID;
+        if (hid && found.hid < 0) found.hid = main.bInterfaceNumber;
+        if (main.bInterfaceClass != LIBUSB_CLASS_VENDOR_SPEC ||
+            main.bInterfaceSubClass != kStreamSubClass ||
+            main.bInterfaceProtocol != kStreamProtocol)
+            continue;
+        for (int e = 0; e < main.bNumEndpoints; ++e) {
+            const libusb_endpoint_descriptor& endpoint = main.endpoint[e];
+            const bool in = (endpoint.bEndpointAddress & LIBUSB_ENDPOINT_IN) != 0;
+            if (!in || (endpoint.bmAttributes & 3) != LIBUSB_TRANSFER_TYPE_BULK) continue;
+            if (found.packet > 0) break;  // the first there is
+            found.stream = main.bInterfaceNumber;
+            found.bulkIn = endpoint.bEndpointAddress;
+            found.packet = endpoint.wMaxPacketSize & 0x7FFU;
+        }
+    }
+    return found;
+}
+
+std::string textIn(std::span<const std::uint8_t> raw) {
+    if (raw.size() < 2 || raw[0] < 2 || raw[1] != LIBUSB_DT_STRING) return {};
     std::string text;
-    for (std::size_t i = 2; i + 1 < std::min<std::size_t>(raw[0], static_cast<std::size_t>(n));
-         i += 2) {
+    for (std::size_t i = 2; i + 1 < std::min<std::size_t>(raw[0], raw.size()); i += 2) {
         const bool printable = raw[i + 1] == 0 && raw[i] >= ' ' && raw[i] <= '~';
         text += printable ? static_cast<char>(raw[i]) : '?';
     }
     return text;
 }
-
-}  // namespace
 
 void UsbFree::operator()(libusb_context* context) const { libusb_exit(context); }
 void UsbFree::operator()(libusb_device* device) const { libusb_unref_device(device); }

@@ -4,8 +4,10 @@
 // descriptors. The transport keeps bulk transfers in flight by itself, in a thread of its own, as
 // long as it is open. Every call ends by its deadline, closing within one second, also when the
 // rig hangs: what is then still in the kernel's hands is left there and never freed.
+// A device that the system might put to sleep is kept awake, or a warning says that it may not be.
 // No rig: NoRig. No permission, or claimed by another program: Busy, and the message says what to
-// do. Gone, or silent: Device, and so is every call from then on; open it anew.
+// do; both may pass, as a device node may get its permissions late. Gone, or silent: Device, and so
+// is every call from then on; open it anew.
 
 #include <cstdint>
 #include <memory>

@@ -79,6 +79,7 @@ public:
     /// Sends a chunk of a type, or tells an event of a code, that no host knows.
     void sendUnknownChunk();
     void tellUnknownEvent();
+    [[nodiscard]] bool capturing() const { return capture_.has_value(); }
     /// An LED shines at this moment.
     [[nodiscard]] bool lit() const { return current_.led >= 0; }
 

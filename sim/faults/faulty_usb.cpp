@@ -131,7 +131,13 @@ bool FaultyUsb::applyToRig(const DueFault& fault) {
         case FaultKind::LimitTransfers: mostTransfers_ = fault.count; return true;
         case FaultKind::EndHang: hung_ = false; return true;
         case FaultKind::EndLimit: mostTransfers_ = kPlenty; return true;
-        case FaultKind::UnknownChunk: device().sendUnknownChunk(); return true;
+        case FaultKind::UnknownChunk:
+            if (!device().capturing()) {  // of no capture it would be stale before it is unknown
+                ++unknownChunksDue_;
+                return false;
+            }
+            device().sendUnknownChunk();
+            return true;
         case FaultKind::UnknownEvent: device().tellUnknownEvent(); return true;
         case FaultKind::OpenInterlock: device().setInterlock(0); return true;
         case FaultKind::CloseInterlock:
@@ -159,6 +165,8 @@ FrameFlaw FaultyUsb::flawOfExposure() {
             player_.later(now(), fault);  // not in the middle of what the rig is doing
         }
     }
+    for (; unknownChunksDue_ > 0; --unknownChunksDue_)
+        player_.later(now(), DueFault{.kind = FaultKind::UnknownChunk});
     if (flaws_.empty()) return FrameFlaw::None;
     const FaultKind kind = flaws_.front();
     flaws_.pop_front();

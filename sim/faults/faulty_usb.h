@@ -94,6 +94,7 @@ private:
     Nanoseconds pulledAt_{0};
     int mostTransfers_;
     int commandsToLose_ = 0;
+    int unknownChunksDue_ = 0;
     int framesSent_ = 0, chunkOfFrame_ = -1;
     std::deque<FaultKind> flaws_;  ///< of exposures to come
 };

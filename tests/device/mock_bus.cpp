@@ -113,6 +113,11 @@ void MockRig::plug() {
     if (!usbfs_) putUp();
 }
 
+void MockRig::sendInstead(std::deque<sim::UsbReply> transfers) {
+    const std::scoped_lock lock(mutex_);
+    usbfs_->sendInstead(std::move(transfers));
+}
+
 void MockRig::unplug() {
     const std::scoped_lock lock(mutex_);
     live_.with([](sim::FaultyUsb& usb) { usb.unplug(); });
@@ -136,6 +141,7 @@ void MockRig::watchTheCable() {
     });
     if (usbfs_ && (!plugged || pulls != pulls_)) takeDown(quietly);
     if (!usbfs_ && plugged) putUp();
+    for (const auto& node : pulled_) node->settle();
 }
 
 void MockRig::putUp() {

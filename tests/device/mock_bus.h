@@ -3,6 +3,7 @@
 // libudev see, answered by simulated rigs in real time. One bus at a time in a process, and the
 // process must run under umockdev-wrapper. Transports are closed before their rig and bus end.
 
+#include <deque>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -49,6 +50,8 @@ public:
     /// The cable is pulled: transfers in flight end in errors, then the nodes vanish. A fault
     /// script pulls it too.
     void unplug();
+    /// The stream brings these transfers and then none, whatever the rig has.
+    void sendInstead(std::deque<sim::UsbReply> transfers);
     /// Those who had the pulled nodes open have closed them.
     void forgetPulled();
     [[nodiscard]] sim::LiveRig& live() { return live_; }

@@ -20,12 +20,23 @@ void MockNode::retire() {
     const auto end = std::chrono::steady_clock::now() + 1s;
     while (isOpen() && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(1ms);
     if (!gone_) pull(false);
+    detach();
     g_signal_handlers_disconnect_by_data(handler_, this);
 }
 
 void MockNode::pull(bool /*quietly*/) {
     gone_ = true;
-    umockdev_testbed_detach_ioctl(testbed_, path_.c_str(), nullptr);
+    pulledAt_ = std::chrono::steady_clock::now();
+}
+
+void MockNode::settle() {
+    constexpr auto kOpening = 100ms;  // whoever was about to open it when it vanished
+    if (gone_ && std::chrono::steady_clock::now() - pulledAt_ > kOpening) detach();
+}
+
+void MockNode::detach() {
+    if (!std::exchange(detached_, true))
+        umockdev_testbed_detach_ioctl(testbed_, path_.c_str(), nullptr);
 }
 
 /// Nobody is told when a client goes: one has to look.

@@ -5,6 +5,7 @@
 #include <umockdev.h>
 
 #include <atomic>
+#include <chrono>
 #include <mutex>
 #include <string>
 #include <vector>
@@ -20,6 +21,9 @@ public:
     MockNode& operator=(const MockNode&) = delete;
     /// From now on the device is gone. Quietly: no transfer in flight ends in an error first.
     virtual void pull(bool quietly);
+    /// Of one that was pulled a while ago, the ends that nobody can come upon any more. Not sooner:
+    /// umockdev ends a process whose open() meets a socket that is just closed.
+    void settle();
 
 protected:
     [[nodiscard]] UMockdevIoctlBase* handler() const { return handler_; }
@@ -33,6 +37,7 @@ protected:
     void retire();
 
 private:
+    void detach();
     static void onOpen(UMockdevIoctlBase*, UMockdevIoctlClient* client, MockNode* self);
 
     UMockdevTestbed* testbed_;
@@ -41,6 +46,8 @@ private:
     std::mutex mutex_;
     std::vector<UMockdevIoctlClient*> clients_;  ///< of the files that were open last time
     std::atomic<bool> gone_{false};
+    std::chrono::steady_clock::time_point pulledAt_{};
+    bool detached_ = false;
 };
 
 }  // namespace gonio::device_test

@@ -213,6 +213,18 @@ int UsbfsNode::discard(UMockdevIoctlData* arg) {
     return 0;
 }
 
+void UsbfsNode::sendInstead(std::deque<sim::UsbReply> transfers) {
+    const std::scoped_lock lock(mutex_);
+    foreign_ = std::move(transfers);
+}
+
+sim::UsbReply UsbfsNode::nextForeign() {
+    if (foreign_->empty()) return {.answer = sim::UsbAnswer::Nak, .data = {}};
+    sim::UsbReply reply = std::move(foreign_->front());
+    foreign_->pop_front();
+    return reply;
+}
+
 /// Ends the oldest bulk transfer if the rig has something for it.
 bool UsbfsNode::advanceBulk() {
     if (live_.faults.hung || waiting_.empty()) return false;
@@ -221,7 +233,7 @@ bool UsbfsNode::advanceBulk() {
     bool wholePackets = true;
     urb.reply = live_.with([&](sim::FaultyUsb& usb) {
         wholePackets = length % usb.bulkPacket() == 0;
-        return usb.bulkIn(length);
+        return foreign_ ? nextForeign() : usb.bulkIn(length);
     });
     if (urb.reply.answer == sim::UsbAnswer::Nak) return false;
     if (urb.reply.answer != sim::UsbAnswer::Done) {

@@ -6,6 +6,7 @@
 
 #include <deque>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "sim/live_rig.h"
@@ -20,6 +21,8 @@ public:
     UsbfsNode(sim::LiveRig& live, UMockdevTestbed* testbed, std::string path);
     ~UsbfsNode() override;
     void pull(bool quietly) override;
+    /// From now on the stream brings these transfers, whatever the rig has, and then none.
+    void sendInstead(std::deque<sim::UsbReply> transfers);
 
 private:
     struct Urb {
@@ -38,12 +41,14 @@ private:
     [[nodiscard]] int mostTransfers();
     bool runControl(Urb& urb);
     [[nodiscard]] bool advanceBulk();
+    [[nodiscard]] sim::UsbReply nextForeign();
     static void forget(std::deque<Urb>& urbs);
     void forgetTheDead();
 
     sim::LiveRig& live_;
     std::mutex mutex_;
     std::deque<Urb> waiting_, done_;
+    std::optional<std::deque<sim::UsbReply>> foreign_;
 };
 
 }  // namespace gonio::device_test

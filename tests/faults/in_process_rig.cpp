@@ -5,6 +5,46 @@
 namespace gonio::fault_test {
 namespace {
 
+/// Ends what would never end: after so many calls the rig is gone for good.
+class Patience : public driver::Transport {
+public:
+    Patience(std::unique_ptr<sim::InProcessDoor> door, int& calls)
+        : door_(std::move(door)), calls_(calls) {}
+    [[nodiscard]] driver::DeviceStrings strings() const override { return door_->strings(); }
+    [[nodiscard]] const Clock& clock() const override { return door_->clock(); }
+    Result<void> write(const driver::Report& report) override {
+        if (over()) return end();
+        return door_->write(report);
+    }
+    Result<void> setFeature(const driver::Report& report) override {
+        if (over()) return end();
+        return door_->setFeature(report);
+    }
+    Result<driver::Report> getFeature(std::uint8_t id) override {
+        if (over()) return end();
+        return door_->getFeature(id);
+    }
+    Result<std::optional<driver::Report>> readInput(Nanoseconds wait) override {
+        if (over()) return end();
+        return door_->readInput(wait);
+    }
+    Result<std::optional<driver::BulkBytes>> readBulk(Nanoseconds wait) override {
+        if (over()) return end();
+        return door_->readBulk(wait);
+    }
+    Result<void> resetStream() override { return door_->resetStream(); }
+    Result<void> reopenReports() override { return door_->reopenReports(); }
+    Result<void> resetPort() override { return door_->resetPort(); }
+
+private:
+    static constexpr int kMostCalls = 100'000;
+    bool over() { return ++calls_ > kMostCalls; }
+    static Error end() { return {ErrorKind::Device, "the test's patience is at its end"}; }
+
+    std::unique_ptr<sim::InProcessDoor> door_;
+    int& calls_;  ///< of all doors to this rig
+};
+
 class InProcessRig : public RigDoor {
 public:
     explicit InProcessRig(const RigSetup& setup) : first_(setup.config) {
@@ -13,7 +53,7 @@ public:
     Result<driver::Transport*> open() override {
         auto door = first_.openAgain();
         if (!door) return door.error();
-        door_ = std::move(*door);
+        door_ = std::make_unique<Patience>(std::move(*door), calls_);
         return door_.get();
     }
     void close() override { door_.reset(); }
@@ -22,7 +62,8 @@ public:
 
 private:
     sim::InProcessDoor first_;  ///< keeps the rig; nobody uses it
-    std::unique_ptr<sim::InProcessDoor> door_;
+    int calls_ = 0;
+    std::unique_ptr<Patience> door_;
 };
 
 }  // namespace

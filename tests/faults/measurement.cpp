@@ -16,7 +16,7 @@ constexpr std::uint64_t kSession = 0x1122334455667788;
 constexpr int kBrackets = 3, kExposures = 3, kFrames = 2;
 constexpr int kTries = 3;             // of a bracket
 constexpr Nanoseconds kLook = 100ms;  // between looks for a lost rig
-constexpr Nanoseconds kGiveUp = 4s;
+constexpr Nanoseconds kGiveUp = 2500ms;
 constexpr int kMostComebacks = 60;
 constexpr Nanoseconds kDark = 2500ms;  // after loss of control
 constexpr Nanoseconds kLongest = 60s;  // of all, whatever happens
@@ -132,9 +132,8 @@ void readBack(Rig& rig, RigDoor& door, Outcome& outcome) {
     if (events) {
         for (const driver::Event& event : *events) outcome.events.push_back(event.code);
         for (std::size_t i = 1; i < events->size(); ++i) {
-            const bool otherBoot = (*events)[i].code == driver::event::kBoot;
-            if (!otherBoot && (*events)[i].sequence != (*events)[i - 1].sequence + 1)
-                outcome.troubles.emplace_back("an event was missed");
+            if ((*events)[i].sequence != (*events)[i - 1].sequence + 1)
+                ++outcome.counts["eventGaps"];
         }
     } else if (outcome.verdict == "completed") {
         outcome.troubles.push_back("events: " + events.error().message);
@@ -145,6 +144,9 @@ void readBack(Rig& rig, RigDoor& door, Outcome& outcome) {
         outcome.counts["redone"] += gap.redone;
         outcome.counts["otherBoots"] += gap.sameBoot ? 0 : 1;
     }
+    // Their numbers begin anew with each boot, and are one after the other else.
+    if (outcome.counts["eventGaps"] != outcome.counts["otherBoots"])
+        outcome.troubles.emplace_back("an event was missed, or told twice");
     outcome.counts["reopens"] += static_cast<int>(rig.link().reopens());
     count(rig.anomalies(), rig.link().counters(), outcome);
     door.with([&](sim::FaultyUsb& usb) {
@@ -174,6 +176,19 @@ void run(RigDoor& door, const RigSetup& setup, Rig& rig, Outcome& outcome) {
     (void)rig.close();
 }
 
+bool isLit(RigDoor& door) {
+    bool lit = false;
+    door.with([&](sim::FaultyUsb& usb) { lit = usb.device().lit(); });
+    return lit;
+}
+
+/// In time: nobody controls the rig any more.
+bool goesDark(RigDoor& door) {
+    for (const Nanoseconds end = door.now() + kDark; isLit(door) && door.now() < end;)
+        door.pause(kLook);
+    return !isLit(door);
+}
+
 }  // namespace
 
 Outcome measure(RigDoor& door, const RigSetup& setup, const Row& row) {
@@ -197,10 +212,7 @@ Outcome measure(RigDoor& door, const RigSetup& setup, const Row& row) {
     }
     door.close();
     if (door.now() - begin > kLongest) outcome.troubles.emplace_back("it took too long");
-    if (outcome.verdict != "completed") door.pause(kDark);
-    door.with([&](sim::FaultyUsb& usb) {
-        if (usb.device().lit()) outcome.troubles.emplace_back("an LED is still lit");
-    });
+    if (!goesDark(door)) outcome.troubles.emplace_back("an LED is still lit");
     return outcome;
 }
 

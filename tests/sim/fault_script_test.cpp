@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <string>
+
 #include "sim/random.h"
 
 namespace gonio::sim {
@@ -92,6 +95,19 @@ TEST(FaultScript, RefusesNumbersThatCannotBe) {
         EXPECT_NE(refusal(line), "") << line;
     }
     EXPECT_NE(refusal(std::string(FaultScript::kMostBytes + 1, '\n')), "");
+}
+
+TEST(FaultScript, TheDocumentHasEveryFaultAndItsExampleIsSound) {
+    std::ifstream file(GONIO_SOURCE_DIR "/docs/fault-scripts.md");
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    const auto begin = text.find("```\n") + 4;
+    EXPECT_EQ(parsed(text.substr(begin, text.find("```", begin) - begin)).rules.size(), 3U);
+    for (std::size_t i = 0; i < kFaultKinds; ++i) {
+        // Up to where a value stands: "flip" of "flip # bits in payload".
+        std::string words(faultName(static_cast<FaultKind>(i)));
+        words = words.substr(0, words.find_first_of("#@$"));
+        EXPECT_NE(text.find("`" + words), std::string::npos) << words;
+    }
 }
 
 TEST(FaultScript, EveryFaultCanBeWrittenAsItIsNamed) {

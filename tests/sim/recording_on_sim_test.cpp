@@ -8,6 +8,7 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <random>
 #include <sstream>
@@ -156,6 +157,89 @@ TEST_F(Recording, OfARigThatWentAwayEndsInTheSameErrors) {
     auto replay = Replay::open(file_);
     ASSERT_TRUE(replay) << replay.error().message;
     EXPECT_EQ(hostOf(**(*replay)->openRig()), seen);
+}
+
+/// Opens the rig, and again each time it is lost, as long as `open` finds one.
+Story persistent(const std::function<Result<Transport*>()>& open) {
+    Story story;
+    const auto search = [&](const Error& lost) -> Result<Transport*> {
+        story.text += lost.message + "\n";
+        for (int i = 0; i < 40; ++i) {
+            if (auto found = open()) return found;
+        }
+        return Error{ErrorKind::Interrupted, "it did not come back"};
+    };
+    auto transport = open();
+    if (!transport) return {.text = transport.error().message, .pictures = {}};
+    auto rig = Rig::open(**transport, kSession);
+    if (!rig) return {.text = rig.error().message, .pictures = {}};
+    rig->onLost(search);
+    if (auto set = rig->configure(kWindow); !set) story.text += set.error().message + "\n";
+    for (std::uint64_t step = 1; step <= 8; ++step) {
+        const auto capture = rig->capture(dark(step), {.next = dark(step + 1)});
+        if (!capture) {
+            story.text += capture.error().message + "\n";
+            continue;
+        }
+        for (const Frame& frame : *capture) story.pictures.push_back(frame.pixels);
+        story.text += capture->anomalies.text() + "\n";
+    }
+    for (const Interruption& gap : rig->takeInterruptions()) {
+        story.text += gap.cause + ": " + std::to_string(gap.resent) + " resent, " +
+                      std::to_string(gap.redone) + " redone\n";
+    }
+    rig->onLost({});
+    return story;
+}
+
+TEST_F(Recording, OfEveryFaultOfTheMatrixGivesTheSameFramesAnomaliesAndErrors) {
+    int scripts = 0, openings = 0;
+    for (const auto& entry :
+         fs::directory_iterator(fs::path(GONIO_SOURCE_DIR) / "tests/faults/scripts")) {
+        SCOPED_TRACE(entry.path().filename().string());
+        std::ifstream in(entry.path());
+        const std::string text{std::istreambuf_iterator<char>(in), {}};
+        auto script = sim::FaultScript::parse(text);
+        ASSERT_TRUE(script) << script.error().message;
+        fs::remove(file_);
+        Story seen;
+        {
+            sim::InProcessDoor first({.serial = "SIM-0007", .seed = 3, .errors = {}});
+            auto recorder = Recorder::open(file_);
+            ASSERT_TRUE(recorder);
+            std::unique_ptr<sim::InProcessDoor> door;
+            std::optional<RecordingTransport> transport;
+            first.usb().play(*script);
+            seen = persistent([&]() -> Result<Transport*> {
+                transport.reset();
+                door.reset();
+                first.usb().advanceTo(first.usb().now() + std::chrono::milliseconds(250));
+                auto opened = first.openAgain();
+                if (!opened) {
+                    recordRefusal(**recorder, opened.error(), first.usb().now());
+                    return opened.error();
+                }
+                door = std::move(*opened);
+                return &transport.emplace(*door, **recorder);
+            });
+        }
+        auto replay = Replay::open(file_);
+        ASSERT_TRUE(replay) << replay.error().message;
+        std::unique_ptr<Transport> transport;
+        const Story again = persistent([&]() -> Result<Transport*> {
+            transport.reset();
+            auto opened = (*replay)->openRig();
+            if (!opened) return opened.error();
+            ++openings;
+            transport = std::move(*opened);
+            return transport.get();
+        });
+        EXPECT_EQ(again.text, seen.text);
+        EXPECT_EQ(again.pictures, seen.pictures);
+        ++scripts;
+    }
+    EXPECT_GE(scripts, 20);
+    EXPECT_GT(openings, scripts) << "some were lost and found again";
 }
 
 TEST_F(Recording, HoldsOneOpeningAfterTheOther) {
