@@ -33,8 +33,8 @@ Result<driver::Transport*> Engine::comeBack(const Error& lost) {
     log::warning(monitor_->job() + ": " + lost.message + "; waiting for the rig");
     port_.close();
     publish([](EngineStatus& status) { status.rig.reset(); });
-    advance(EngineEvent::Lost, lost.message);
     hinder(lost);
+    advance(EngineEvent::Lost, lost.message);
     while (monitor_->mayWait()) {
         world_.alive();
         if (Result<void> on = monitor_->goOn(); !on) return on.error();
@@ -70,8 +70,8 @@ Result<void> Engine::awaitLight(const Error& why) {
     const std::string wanted = explained(static_cast<std::uint16_t>(why.deviceStatus));
     log::warning(monitor_->job() + ": " + wanted);
     while (monitor_->mayWait()) {
-        advance(EngineEvent::Hindered, wanted);  // also after it was lost meanwhile
         hinder(Error{ErrorKind::Device, wanted, why.deviceStatus});
+        advance(EngineEvent::Hindered, wanted);  // also after it was lost meanwhile
         world_.alive();
         if (Result<void> on = monitor_->goOn(); !on) return on;
         const Result<bool> may = mayLight();
