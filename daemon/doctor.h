@@ -1,8 +1,9 @@
 #pragma once
-// What stands between a user and a measurement on this computer: permissions, the kernel's limits,
-// the store, the daemon. Looks and changes nothing; each finding says what to do.
+// Whom the doctor looks at. What it says is in doctor_system.h of the computer, in doctor_usb.h of
+// a rig from outside, in doctor_rig.h of one that it has claimed; only the last changes anything.
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,19 +12,12 @@
 
 namespace gonio::daemon {
 
-enum class Verdict {
-    Good,
-    Note,     ///< works, or is not needed here
-    Warning,  ///< will be missed sooner or later
-    Bad       ///< nothing can be measured like this
-};
-[[nodiscard]] std::string_view name(Verdict verdict);
-
-struct Finding {
-    std::string subject;  ///< "udev-rule"
-    Verdict verdict = Verdict::Good;
-    std::string seen;
-    std::string cure;  ///< empty: nothing to do
+/// What the daemon's status says.
+struct DaemonSeen {
+    int pid = 0;
+    std::string rigKind{};    ///< "sim" or "usb"
+    std::string rigSerial{};  ///< empty: it has no rig
+    std::optional<double> ledBoardCelsius{}, sensorCelsius{};
 };
 
 /// What is looked at. `root` stands before every absolute path, so that a test can bring its own.
@@ -31,11 +25,10 @@ struct Patient {
     std::filesystem::path root = "/";
     std::filesystem::path store;
     Result<std::vector<driver::UsbRig>> rigs;
-    Result<void> daemon;  ///< what asking it gave
+    Result<DaemonSeen> daemon;  ///< what asking it gave
 };
 
-/// usb, permission, udev-rule, hotplug, usbfs-memory, hidraw, store, daemon: one finding each, in
-/// this order.
-[[nodiscard]] std::vector<Finding> examine(const Patient& patient);
-
+/// Its serial number, or where it is plugged in.
+[[nodiscard]] std::string nameOf(const driver::UsbRig& rig);
+[[nodiscard]] bool usedByDaemon(const Patient& patient, const driver::UsbRig& rig);
 }  // namespace gonio::daemon

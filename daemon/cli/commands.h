@@ -100,7 +100,12 @@ struct WatchOptions {
 /// Prints events as they happen, until Ctrl-C.
 Result<void> watch(const CommonOptions& common, const WatchOptions& options);
 
-Result<void> doctor(const CommonOptions& common);
+struct DoctorOptions {
+    bool handsOff = false;          ///< no rig is claimed: seen from outside only
+    std::filesystem::path profile;  ///< what a rig's noise is held against; empty: by its camera
+};
+/// What stands between this computer and a measurement; a rig that is free takes dark frames.
+Result<void> doctor(const CommonOptions& common, const DoctorOptions& options);
 
 struct InfoOptions {
     std::string file;

@@ -196,9 +196,18 @@ void Program::addDaemon() {
     command(*app, "calibrations", "those of the store, and why one is not good now", [this] {
         return calibrations(common);
     });
-    command(*app, "doctor", "what stands between this computer and a measurement", [this] {
-        return doctor(common);
-    });
+    CLI::App* examine =
+        command(*app, "doctor", "what stands between this computer and a measurement", [this] {
+            return daemon::doctor(common, doctor);
+        });
+    examine->add_flag("--hands-off",
+                      doctor.handsOff,
+                      "claim no rig: without clock, temperatures, dark frames and counters");
+    examine->add_option(
+        "--profile",
+        doctor.profile,
+        "what a rig's noise is held against; default: minidiff-usb2 or minidiff-usb3, "
+        "by its camera");
     CLI::App* parent = command(
         *app, "jobs", "the newest jobs and how they ended", [this] { return jobs(common); });
     command(*parent, "cancel", "end the job that runs", [this] { return cancelJob(common); });

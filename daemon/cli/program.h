@@ -26,6 +26,7 @@ struct Program {
     VerifyOptions verify;
     std::string limit = "1%";
     MeasureOptions measure;
+    DoctorOptions doctor;
     RecalibrateOptions recalibrate;
     SessionOptions session;
     WatchOptions watch;

@@ -17,6 +17,7 @@ public:
     [[nodiscard]] std::string_view kind() const override { return inner_->kind(); }
     [[nodiscard]] Result<std::vector<RigListing>> list() override { return inner_->list(); }
     [[nodiscard]] Result<driver::Transport*> open() override {
+        transport_.reset();  // what it goes around may end now
         Result<driver::Transport*> opened = inner_->open();
         if (!opened) {
             driver::recordRefusal(*recorder_, opened.error(), Nanoseconds{0});

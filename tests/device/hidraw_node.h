@@ -20,6 +20,7 @@ public:
 
 private:
     void firstOpened() override;
+    void opened() override;
     static gboolean onIoctl(UMockdevIoctlBase*, UMockdevIoctlClient* client, HidrawNode* self);
     static gboolean onWrite(UMockdevIoctlBase*, UMockdevIoctlClient* client, HidrawNode* self);
     /// Bytes moved, or minus the errno.

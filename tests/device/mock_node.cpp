@@ -52,6 +52,7 @@ bool MockNode::isOpen() {
 
 void MockNode::onOpen(UMockdevIoctlBase*, UMockdevIoctlClient* client, MockNode* self) {
     if (!self->isOpen()) self->firstOpened();
+    self->opened();
     const std::scoped_lock lock(self->mutex_);
     self->clients_.push_back(UMOCKDEV_IOCTL_CLIENT(g_object_ref(client)));
 }

@@ -33,6 +33,8 @@ protected:
     [[nodiscard]] bool gone() const { return gone_; }
     /// Somebody opens it whom nobody came before.
     virtual void firstOpened() {}
+    /// Somebody opens it: also one who closed it so lately that it still looks open.
+    virtual void opened() {}
     /// A derived class calls it first thing when it ends: no request comes after it.
     void retire();
 

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 
+#include "tests/faults/figures.h"
 #include "tests/faults/measurement.h"
 #include "tests/faults/mocked_rig.h"
 #include "tests/faults/row_seeds.h"
@@ -37,6 +38,7 @@ TEST_P(FaultRowOnUsb, HasTheSameVerdict) {
     const RigSetup setup = setupOf(kSide, kChunk);
     Row row = readRow(GetParam());
     row.seeds = kInCheck;
+    Figures figures(row, "umockdev");
     const Seeds seeds = seedsOf(row, kNightly);
     for (int seed = seeds.first; seed <= seeds.last && !HasFailure(); ++seed) {
         row.script.seed = static_cast<std::uint64_t>(seed);
@@ -45,7 +47,9 @@ TEST_P(FaultRowOnUsb, HasTheSameVerdict) {
         door->close();  // what the libraries keep for good, they have now
         const std::size_t opened = devices(), running = threads();
         const Outcome outcome = measure(*door, setup, row);
-        for (const std::string& complaint : complaints(row, outcome, undisturbed(setup)))
+        const auto bad = complaints(row, outcome, undisturbed(setup));
+        figures.add(outcome, bad.empty());
+        for (const std::string& complaint : bad)
             ADD_FAILURE() << "seed " << seed << ": " << complaint;
         EXPECT_EQ(threads(), running) << "seed " << seed;
         EXPECT_EQ(devices(), opened) << "seed " << seed;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/faults/figures.h"
 #include "tests/faults/measurement.h"
 #include "tests/faults/row_seeds.h"
 
@@ -14,12 +15,15 @@ TEST_P(FaultRow, HasItsVerdictInProcess) {
     constexpr int kNightly = 1000;
     const RigSetup setup = smallSetup();
     Row row = readRow(GetParam());
+    Figures figures(row, "inproc");
     const Seeds seeds = seedsOf(row, kNightly);
     for (int seed = seeds.first; seed <= seeds.last && !HasFailure(); ++seed) {
         row.script.seed = static_cast<std::uint64_t>(seed);
         const auto door = inProcess(setup);
         const Outcome outcome = measure(*door, setup, row);
-        for (const std::string& complaint : complaints(row, outcome, undisturbed(setup)))
+        const auto bad = complaints(row, outcome, undisturbed(setup));
+        figures.add(outcome, bad.empty());
+        for (const std::string& complaint : bad)
             ADD_FAILURE() << "seed " << seed << ": " << complaint;
     }
 }

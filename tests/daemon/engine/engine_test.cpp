@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <barrier>
 
+#include "daemon/engine/recorded_port.h"
+#include "daemon/engine/replay_port.h"
 #include "daemon/rig_calibration.h"
 #include "proc/core/number_text.h"
 #include "proc/models/spec.h"
@@ -127,6 +129,43 @@ TEST_F(EngineOnRig, JobRunsThenComputesThenTheRigIsIdle) {
     EXPECT_EQ(Json::parse(job.result)["schema"], "gonio/verify-white/1");
     EXPECT_TRUE(port.cable.wasLit());
     EXPECT_TRUE(waitUntil([&] { return !port.cable.lit(); }));
+}
+
+/// What a check of the white says, by an engine of its own on `rig`.
+Json whiteVerdict(RigPort& rig) {
+    const test::TempFolder store;
+    calibrate(store.path());
+    RunningEngine engine(store.path(), rig);
+    engine.await(EngineState::Idle);
+    Watcher watcher(*engine);
+    const auto job = engine->submit({.kind = JobKind::VerifyWhite, .limit = 1});
+    EXPECT_TRUE(job) << job.error().message;
+    watcher.until("job", {{"state", "done"}});
+    engine.end();
+    auto book = Logbook::open(store.path());
+    const auto found = book->job(job ? job->id : 0);
+    return found ? Json::parse(found->result) : Json();
+}
+
+TEST_F(EngineOnRig, RecordingInTheRigsPlaceGivesTheSameVerdict) {
+    const auto file = folder / "traffic";
+    Json seen;
+    {
+        auto real = std::make_unique<test::TestPort>();
+        real->cable.device().place({.role = sim::Role::Sample,
+                                    .surface = std::move(*proc::makeModel("lambert,albedo=0.9")),
+                                    .wedge = {}});
+        auto recorder = driver::Recorder::open(file);
+        ASSERT_TRUE(recorder) << recorder.error().message;
+        RecordedPort recorded(std::move(real), std::move(*recorder));
+        seen = whiteVerdict(recorded);
+    }
+    EXPECT_EQ(seen["schema"], "gonio/verify-white/1");
+    auto replay = driver::Replay::open(file);
+    ASSERT_TRUE(replay) << replay.error().message;
+    ReplayPort replayed(std::move(*replay));
+    EXPECT_EQ(whiteVerdict(replayed), seen);
+    EXPECT_EQ(replayed.list()->front().serial, "SIM-0001");
 }
 
 TEST_F(EngineOnRig, WhileAJobRunsEverythingElseIsBusy) {

@@ -1,0 +1,278 @@
+#include "daemon/doctor_rig.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "driver/rig.h"
+#include "proc/core/number_text.h"
+
+namespace gonio::daemon {
+namespace {
+
+constexpr int kReadings = 8;                     // of the clock; the quickest counts
+constexpr double kMostDrift = 200e-6;            // two usual crystals differ by 100 ppm at most
+constexpr double kSlowRoundTrip = 0.02;          // s; a command is repeated after 0.1 s
+constexpr double kNearLimit = 2;                 // K
+constexpr Microseconds kExposure{1000};          // of a dark frame: its dark current is nothing
+constexpr double kNoisy = 1.3, kTooQuiet = 0.7;  // of the profile's noise
+constexpr double kOutlier = 5;                   // sigma: hot pixels have a noise of their own
+constexpr double kBlackTolerance = 1;            // DN
+constexpr double kUsualShare = 1e-3;             // of reports and chunks that come damaged
+
+std::string ppm(double relative) { return fixed(relative * 1e6, 0) + " ppm"; }
+std::string milliseconds(double seconds) { return fixed(seconds * 1e3, 2) + " ms"; }
+
+// ---- clock ----
+
+/// The rig's clock at a moment of the host's.
+struct ClockReading {
+    double host = 0, device = 0, roundTrip = 0;  // s
+};
+
+Result<ClockReading> readClock(driver::RigLink& link) {
+    const auto now = [&] { return std::chrono::duration<double>(link.clock().now()).count(); };
+    std::optional<ClockReading> best;
+    for (int i = 0; i < kReadings; ++i) {
+        const double before = now();
+        const auto answer = link.command(
+            driver::Op::SyncTime, driver::encodeU64(static_cast<std::uint64_t>(before * 1e6)));
+        if (!answer) return answer.error();
+        const ClockReading reading{.host = (before + now()) / 2,
+                                   .device = static_cast<double>(driver::decodeU64(*answer)) * 1e-6,
+                                   .roundTrip = now() - before};
+        if (!best || reading.roundTrip < best->roundTrip) best = reading;
+    }
+    return *best;
+}
+
+Finding clock(const Result<ClockReading>& first, const Result<ClockReading>& last) {
+    if (!first || !last) {
+        return {"clock",
+                Verdict::Fail,
+                (first ? last : first).error().message,
+                "plug the rig in again; bring its firmware up to date"};
+    }
+    const double passed = last->host - first->host;
+    const double drift = (last->device - first->device) / passed - 1;
+    // The moment of a reading is known to half its round trip, and to 1 us of the rig's clock.
+    const double uncertainty = ((first->roundTrip + last->roundTrip) / 2 + 2e-6) / passed;
+    const std::string seen = "round trip " + milliseconds(last->roundTrip) + ", drift " +
+                             ppm(drift) + " +- " + ppm(uncertainty) + " in " + fixed(passed, 2) +
+                             " s";
+    if (std::abs(drift) - uncertainty > kMostDrift) {
+        return {"clock",
+                Verdict::Warn,
+                seen,
+                "exposures are counted by this clock: have the rig's oscillator looked at"};
+    }
+    if (last->roundTrip > kSlowRoundTrip) {
+        return {"clock", Verdict::Warn, seen, "plug it in without a hub; is the computer busy?"};
+    }
+    return {"clock", Verdict::Ok, seen, ""};
+}
+
+// ---- what STATUS says ----
+
+Finding temperature(const driver::Status& status, const driver::Limits& limits) {
+    struct Place {
+        const char* name;
+        std::optional<double> celsius;
+        std::array<std::int16_t, 2> range;
+    };
+    const std::array places{
+        Place{"LED board", driver::celsius(status.temperature[0]), limits.ledTemperature},
+        Place{"sensor", driver::celsius(status.temperature[1]), limits.sensorTemperature}};
+    std::string seen;
+    Verdict verdict = Verdict::Ok;
+    for (const Place& place : places) {
+        seen += (seen.empty() ? "" : ", ") + std::string(place.name) + " ";
+        if (!place.celsius) {
+            seen += "without a thermometer";
+            continue;
+        }
+        const double low = place.range[0] * 0.01, high = place.range[1] * 0.01;
+        seen += fixed(*place.celsius, 1) + " degC of " + fixed(low, 0) + ".." + fixed(high, 0);
+        const double room = std::min(*place.celsius - low, high - *place.celsius);
+        if (room < kNearLimit)
+            verdict = std::max(verdict, room < 0 ? Verdict::Fail : Verdict::Warn);
+    }
+    return {
+        "temperature",
+        verdict,
+        seen,
+        verdict == Verdict::Ok ? "" : "outside no frame is valid: air, shade, or time to warm up"};
+}
+
+bool mayLight(const driver::Status& status) {
+    return (status.interlock & driver::interlock::kMayLight) == driver::interlock::kMayLight;
+}
+
+Finding interlock(const driver::Status& status) {
+    if (status.state == driver::RigState::Fault) {
+        return {"interlock",
+                Verdict::Fail,
+                "the rig is in fault: " + driver::statusName(status.fault),
+                "remove the cause; the next job clears the fault"};
+    }
+    if (mayLight(status)) return {"interlock", Verdict::Ok, "closed", ""};
+    const bool seated = (status.interlock & driver::interlock::kSeated) != 0;
+    return {"interlock",
+            Verdict::Warn,
+            seated ? "the cover is open" : "the aperture does not sit on the sample",
+            "no LED is lit like this: set the rig down on the sample, close the cover"};
+}
+
+// ---- frames ----
+
+Result<driver::Capture> darkFrames(driver::Rig& rig) {
+    const driver::RigInfo info = rig.identify();
+    const auto shortest = std::max(kExposure, info.exposureMin);
+    if (auto done = rig.configure({.x = 0, .y = 0, .size = info.sensor, .binning = 1}); !done)
+        return done.error();
+    return rig.capture({.planStep = 1, .exposure = shortest, .frames = 2, .keepLit = false});
+}
+
+Finding selfTest(const Result<driver::Capture>& dark) {
+    if (!dark) {
+        return {"self-test",
+                Verdict::Fail,
+                dark.error().message,
+                "another cable and port first; then the rig's firmware"};
+    }
+    const Size size = dark->front().pixels.size();
+    const std::string seen = "2 dark frames of " + std::to_string(size.width) + " x " +
+                             std::to_string(size.height) + ", both checksums agree, valid";
+    if (dark->anomalies.total() == 0 && dark->resends == 0)
+        return {"self-test", Verdict::Ok, seen, ""};
+    return {"self-test",
+            Verdict::Warn,
+            seen + ", after " + dark->anomalies.text(),
+            "another cable or port: the stream comes damaged, and is repaired each time"};
+}
+
+/// Of one frame, in DN: from the difference of two, which leaves out what both have.
+struct DarkNoise {
+    double mean = 0, sigma = 0;
+};
+
+DarkNoise noiseOf(const Frame& a, const Frame& b) {
+    const auto first = a.pixels.pixels();
+    const auto second = b.pixels.pixels();
+    DarkNoise noise;
+    double most = std::numeric_limits<double>::infinity();
+    for (int pass = 0; pass < 2; ++pass) {
+        double n = 0, sum = 0, level = 0, squares = 0;
+        for (std::size_t i = 0; i < first.size(); ++i) {
+            const double difference = double{1} * first[i] - second[i];
+            if (std::abs(difference) > most) continue;
+            n += 1;
+            sum += difference;
+            squares += difference * difference;
+            level += (double{1} * first[i] + second[i]) / 2;
+        }
+        const double mean = sum / n;
+        const double spread = std::sqrt(std::max(squares / n - mean * mean, 0.0));
+        noise = {.mean = level / n, .sigma = spread / std::sqrt(2.0)};
+        most = kOutlier * std::max(spread, 1.0);
+    }
+    return noise;
+}
+
+Finding noise(const Result<driver::Capture>& dark, const RigProfile& profile) {
+    if (!dark) return {"noise", Verdict::Note, "no frame to judge", ""};
+    const Frame& frame = dark->front();
+    const DarkNoise seen = noiseOf(frame, (*dark)[1]);
+    const double wanted = std::sqrt(profile.noise.darkVariance(frame.exposure.seconds())) /
+                          profile.noise.electronsPerDn;
+    const std::string text = fixed(seen.sigma, 2) + " DN, " + profile.name + " says " +
+                             fixed(wanted, 2) + "; black " + fixed(seen.mean, 1) +
+                             " DN, the rig says " + std::to_string(frame.blackLevel);
+    if (std::abs(seen.mean - frame.blackLevel) > kBlackTolerance) {
+        return {"noise",
+                Verdict::Warn,
+                text,
+                "does light leak in? set the rig down, close the cover; then gonio calibrate dark"};
+    }
+    if (seen.sigma > kNoisy * wanted || seen.sigma < kTooQuiet * wanted) {
+        return {"noise",
+                Verdict::Warn,
+                text,
+                "is it the right profile? then gonio calibrate sensor measures it anew"};
+    }
+    return {"noise", Verdict::Ok, text, ""};
+}
+
+// ---- counters ----
+
+Finding counters(const Result<driver::Stats>& stats) {
+    if (!stats) return {"counters", Verdict::Fail, stats.error().message, "plug the rig in again"};
+    const auto share = [](std::uint32_t part, std::uint32_t of) {
+        return static_cast<double>(part) / std::max(static_cast<double>(of), 1.0);
+    };
+    const auto count = [](std::uint32_t n, const char* what) {
+        return std::to_string(n) + " " + what;
+    };
+    const std::string seen = "in " + std::to_string(stats->uptimeS) +
+                             " s since it was started: " + count(stats->framesMade, "frames, ") +
+                             count(stats->resends, "chunks sent again, ") +
+                             count(stats->framesGone, "asked for too late, ") +
+                             count(stats->fifoOverruns, "frames skipped, ") +
+                             count(stats->crcRejects, "reports damaged, ") +
+                             count(stats->replays, "commands repeated, ") +
+                             count(stats->lapses, "heartbeats lost");
+    if (stats->fifoOverruns > 0) {
+        return {"counters",
+                Verdict::Warn,
+                seen,
+                "the host was too slow to take frames: fewer programs at once, a port of its own"};
+    }
+    // A frame has some ten chunks.
+    if (share(stats->resends, stats->framesMade) > 10 * kUsualShare ||
+        share(stats->crcRejects, stats->commandsDone) > kUsualShare) {
+        return {"counters", Verdict::Warn, seen, "another cable or port: bytes come damaged"};
+    }
+    return {"counters", Verdict::Ok, seen, ""};
+}
+
+}  // namespace
+
+std::vector<Finding> examineInside(driver::Transport& transport,
+                                   std::uint64_t session,
+                                   const RigProfile& profile) {
+    auto rig = driver::Rig::open(transport, session);
+    if (!rig) return {{"claim", Verdict::Fail, rig.error().message, "end who uses it; see holder"}};
+    driver::RigLink& link = rig->link();
+    const auto clockBefore = readClock(link);
+    const auto status = rig->status();
+    const bool open = status && !mayLight(*status);
+    const Result<driver::Capture> dark =
+        open ? Error{ErrorKind::Device, "the interlock is open"} : darkFrames(*rig);
+    const auto clockAfter = readClock(link);
+    const auto stats = link.stats();
+    std::vector<Finding> findings{{"claim", Verdict::Ok, "claimed, and given back dark", ""}};
+    findings.push_back(clock(clockBefore, clockAfter));
+    if (status) {
+        findings.push_back(temperature(*status, link.limits()));
+        findings.push_back(interlock(*status));
+    } else {
+        const std::string& why = status.error().message;
+        findings.push_back({"temperature", Verdict::Fail, why, "plug the rig in again"});
+        findings.push_back({"interlock", Verdict::Note, "not known", ""});
+    }
+    findings.push_back(open ? Finding{"self-test",
+                                      Verdict::Note,
+                                      "no frame is valid while the interlock is open",
+                                      ""}
+                            : selfTest(dark));
+    findings.push_back(noise(dark, profile));
+    findings.push_back(counters(stats));
+    if (Result<void> given = rig->close(); !given)
+        findings.front() = {"claim", Verdict::Warn, given.error().message, "plug it in again"};
+    return findings;
+}
+
+}  // namespace gonio::daemon

@@ -1,0 +1,21 @@
+#pragma once
+// A rig that is plugged in, seen from outside: what sysfs, /proc and its strings say of it. Nothing
+// of it is claimed.
+
+#include <string>
+#include <vector>
+
+#include "daemon/doctor.h"
+#include "daemon/finding.h"
+
+namespace gonio::daemon {
+
+/// permission, protocol, kernel-driver, hidraw-node, speed, autosuspend, holder: one finding each,
+/// in this order.
+[[nodiscard]] std::vector<Finding> examineOutside(const Patient& patient,
+                                                  const driver::UsbRig& rig);
+
+/// What stands against claiming the rig now: no permission, or somebody has it. Empty: nothing.
+[[nodiscard]] std::string inTheWay(const Patient& patient, const driver::UsbRig& rig);
+
+}  // namespace gonio::daemon

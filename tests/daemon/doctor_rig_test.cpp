@@ -1,0 +1,184 @@
+// The doctor on a simulated rig that he has claimed: each ailment once.
+
+#include "daemon/doctor_rig.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "driver/rig.h"
+#include "sim/in_process.h"
+
+namespace gonio::daemon {
+namespace {
+
+constexpr std::uint64_t kSession = 0x1122334455667788;
+
+/// A rig in process whose answers pass through `bend` on their way.
+class BentRig : public driver::Transport, private Clock {
+public:
+    explicit BentRig(const sim::DeviceConfig& config) : door(config) {}
+
+    [[nodiscard]] driver::DeviceStrings strings() const override { return door.strings(); }
+    [[nodiscard]] const Clock& clock() const override { return *this; }
+    Result<void> write(const driver::Report& report) override { return door.write(report); }
+    Result<void> setFeature(const driver::Report& report) override {
+        return door.setFeature(report);
+    }
+    [[nodiscard]] Result<driver::Report> getFeature(std::uint8_t id) override {
+        auto report = door.getFeature(id);
+        if (report && bend) bend(*report);
+        return report;
+    }
+    [[nodiscard]] Result<std::optional<driver::Report>> readInput(Nanoseconds wait) override {
+        auto report = door.readInput(wait);
+        if (report && *report && bend) bend(**report);
+        return report;
+    }
+    [[nodiscard]] Result<std::optional<driver::BulkBytes>> readBulk(Nanoseconds wait) override {
+        if (streamDead) {
+            const auto nothing = door.readInput(wait);  // time passes
+            if (!nothing) return nothing.error();
+            return std::optional<driver::BulkBytes>();
+        }
+        return door.readBulk(wait);
+    }
+    Result<void> resetStream() override { return door.resetStream(); }
+    Result<void> reopenReports() override { return door.reopenReports(); }
+    Result<void> resetPort() override { return door.resetPort(); }
+
+    sim::InProcessDoor door;
+    std::function<void(driver::Report&)> bend;
+    bool streamDead = false;
+    double hostSlow = 0;  ///< the host's clock runs so much slower than the rig's
+
+private:
+    [[nodiscard]] Nanoseconds now() const override {
+        const auto rig = door.clock().now();
+        return rig - std::chrono::duration_cast<Nanoseconds>(rig * hostSlow);
+    }
+};
+
+sim::DeviceConfig config() {
+    return {.serial = "SIM-0042", .seed = 11, .bootCount = 1, .errors = {}};
+}
+
+class DoctorInside : public testing::Test {
+protected:
+    DoctorInside() : rig(config()), profile(*readProfile(defaultProfile())) {}
+    [[nodiscard]] std::vector<Finding> all() { return examineInside(rig, kSession, profile); }
+    [[nodiscard]] Finding seen(const std::string& subject) {
+        for (const Finding& one : all()) {
+            if (one.subject == subject) return one;
+        }
+        ADD_FAILURE() << subject;
+        return {};
+    }
+    /// Changes one kind of the reports on their way.
+    template <class T, class Decode>
+    void change(Decode decode, std::function<void(T&)> how) {
+        rig.bend = [decode, how](driver::Report& report) {
+            auto value = decode(report);
+            if (!value) return;  // another report
+            how(*value);
+            report = driver::encode(*value);
+        };
+    }
+
+    BentRig rig;
+    RigProfile profile;
+};
+
+TEST_F(DoctorInside, SoundRigHasNoAilmentAndIsGivenBackDark) {
+    const auto findings = all();
+    ASSERT_EQ(findings.size(), 7U);
+    for (const Finding& one : findings) {
+        EXPECT_EQ(one.verdict, Verdict::Ok) << one.subject << ": " << one.seen;
+        EXPECT_EQ(one.cure, "") << one.subject;
+    }
+    EXPECT_FALSE(rig.door.device().lit());
+    const auto free = driver::Rig::open(rig, kSession + 2);
+    EXPECT_TRUE(free) << free.error().message;
+}
+
+TEST_F(DoctorInside, RigThatAnotherSessionOwnsIsLeftToIt) {
+    auto owner = driver::Rig::open(rig, kSession + 2);
+    ASSERT_TRUE(owner);
+    const auto findings = all();
+    ASSERT_EQ(findings.size(), 1U);
+    EXPECT_EQ(findings.front().subject, "claim");
+    EXPECT_EQ(findings.front().verdict, Verdict::Fail);
+    EXPECT_TRUE(owner->status());
+    EXPECT_EQ(owner->status()->owner, driver::Owner::Alive);
+}
+
+TEST_F(DoctorInside, DriftingClockIsAWarningWithItsFigure) {
+    rig.hostSlow = 2e-3;
+    const Finding clock = seen("clock");
+    EXPECT_EQ(clock.verdict, Verdict::Warn);
+    EXPECT_NE(clock.seen.find("drift 200"), std::string::npos) << clock.seen;  // 2004 ppm or near
+}
+
+TEST_F(DoctorInside, HotRigIsAFailureAndAWarmOneAWarning) {
+    const auto at = [&](std::int16_t hundredths) {
+        change<driver::Status>([](const driver::Report& r) { return driver::decodeStatus(r); },
+                               [hundredths](driver::Status& s) { s.temperature[0] = hundredths; });
+        return seen("temperature").verdict;
+    };
+    const auto link = driver::RigLink::open(rig, {.sessionId = kSession});
+    ASSERT_TRUE(link);
+    const std::int16_t highest = (*link)->limits().ledTemperature[1];
+    ASSERT_TRUE((*link)->release());
+    EXPECT_EQ(at(static_cast<std::int16_t>(highest - 201)), Verdict::Ok);
+    EXPECT_EQ(at(static_cast<std::int16_t>(highest - 199)), Verdict::Warn);
+    EXPECT_EQ(at(static_cast<std::int16_t>(highest + 1)), Verdict::Fail);
+}
+
+TEST_F(DoctorInside, OpenInterlockIsAWarningThatSaysWhichOne) {
+    rig.door.device().setInterlock(driver::interlock::kSeated);
+    EXPECT_EQ(seen("interlock").verdict, Verdict::Warn);
+    EXPECT_EQ(seen("interlock").seen, "the cover is open");
+    rig.door.device().setInterlock(driver::interlock::kCoverClosed);
+    EXPECT_NE(seen("interlock").seen.find("aperture"), std::string::npos);
+    EXPECT_EQ(seen("self-test").verdict, Verdict::Note);  // no frame would be valid
+}
+
+TEST_F(DoctorInside, RigThatSendsNoFrameFailsItsSelfTestInTime) {
+    rig.streamDead = true;
+    const Nanoseconds before = rig.door.clock().now();
+    EXPECT_EQ(seen("self-test").verdict, Verdict::Fail);
+    EXPECT_LT(rig.door.clock().now() - before, std::chrono::seconds(60));
+    EXPECT_EQ(seen("noise").verdict, Verdict::Note);
+}
+
+TEST_F(DoctorInside, NoiseOfAnotherSensorThanTheProfilesIsAWarning) {
+    EXPECT_EQ(seen("noise").verdict, Verdict::Ok) << seen("noise").seen;
+    profile.noise.readNoiseElectrons *= 1.5;
+    EXPECT_EQ(seen("noise").verdict, Verdict::Warn);
+    profile.noise.readNoiseElectrons /= 3;
+    EXPECT_EQ(seen("noise").verdict, Verdict::Warn);
+}
+
+TEST_F(DoctorInside, LightThatLeaksInIsAWarning) {
+    rig.door.device().place({.errors = {.ambient = 0.2}});
+    const Finding noise = seen("noise");
+    EXPECT_EQ(noise.verdict, Verdict::Warn) << noise.seen;
+    EXPECT_NE(noise.cure.find("light leak"), std::string::npos);
+}
+
+TEST_F(DoctorInside, CountersTellOfAHostThatIsTooSlowAndOfACableThatIsBad) {
+    const auto with = [&](std::function<void(driver::Stats&)> how) {
+        change<driver::Stats>([](const driver::Report& r) { return driver::decodeStats(r); },
+                              std::move(how));
+        return seen("counters");
+    };
+    EXPECT_NE(with([](driver::Stats& s) { s.fifoOverruns = 1; }).cure.find("too slow"),
+              std::string::npos);
+    EXPECT_NE(with([](driver::Stats& s) { s.resends = 5000; }).cure.find("cable"),
+              std::string::npos);
+    EXPECT_NE(with([](driver::Stats& s) { s.crcRejects = 5000; }).cure.find("cable"),
+              std::string::npos);
+}
+
+}  // namespace
+}  // namespace gonio::daemon
