@@ -171,22 +171,28 @@ Result<std::shared_ptr<const Scatterer>> truthOf(const proc::SampleInfo& info,
         std::make_shared<const sim::MixedBands>(std::move(material->scatterer), rig->crosstalk));
 }
 
-Result<std::unique_ptr<sim::InProcessDoor>> openSim(const SimState& state,
-                                                    const Store& store,
-                                                    int cameraUsb) {
+Result<sim::DeviceConfig> simDevice(const SimState& state, int cameraUsb) {
     const auto errors = sim::ReferenceErrors::parse(state.systematic, state.seed);
     if (!errors) return errors.error();
     const Result<sim::RigErrors> rig = rigErrorsOf(state);
     if (!rig) return rig.error();
+    return sim::DeviceConfig{
+        .serial = state.serial,
+        .seed = state.seed,
+        .bootCount = 1,
+        .errors = *errors,
+        .camera = cameraUsb == 3 ? sim::CameraKind::Usb3 : sim::CameraKind::Usb2,
+        .rig = *rig};
+}
+
+Result<std::unique_ptr<sim::InProcessDoor>> openSim(const SimState& state,
+                                                    const Store& store,
+                                                    int cameraUsb) {
+    const auto config = simDevice(state, cameraUsb);
+    if (!config) return config.error();
     Result<sim::Placement> placement = makePlacement(state, store);
     if (!placement) return placement.error();
-    auto door = std::make_unique<sim::InProcessDoor>(
-        sim::DeviceConfig{.serial = state.serial,
-                          .seed = state.seed,
-                          .bootCount = 1,
-                          .errors = *errors,
-                          .camera = cameraUsb == 3 ? sim::CameraKind::Usb3 : sim::CameraKind::Usb2,
-                          .rig = *rig});
+    auto door = std::make_unique<sim::InProcessDoor>(*config);
     door->device().place(std::move(*placement));
     return door;
 }

@@ -49,6 +49,9 @@ void describe(const SimState& state, proc::SampleInfo& info);
 [[nodiscard]] Result<std::shared_ptr<const Scatterer>> truthOf(const proc::SampleInfo& info,
                                                                const std::filesystem::path& store);
 
+/// The rig that the state says. `cameraUsb` is 2 or 3, as the rig profile says.
+[[nodiscard]] Result<sim::DeviceConfig> simDevice(const SimState& state, int cameraUsb = 2);
+
 /// A rig as the state says, with its placement under it and a camera of this USB (2 or 3, as the
 /// rig profile says).
 [[nodiscard]] Result<std::unique_ptr<sim::InProcessDoor>> openSim(const SimState& state,

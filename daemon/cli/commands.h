@@ -26,6 +26,22 @@ struct CommonOptions {
 
 Result<void> simPlace(const CommonOptions& common, PlaceRequest place);
 
+struct SimServeOptions {
+    bool usbip = false;   ///< over TCP
+    bool attach = false;  ///< to this computer's own kernel
+    std::string bind = "127.0.0.1";
+    int port = 3240;
+    std::vector<std::string> serials{"SIM-0001"};
+    std::string placed = "nothing";
+    std::uint64_t seed = 1;
+    std::string systematic = "random";
+    std::string rigErrors = "none";
+    std::string camera = "usb2";
+    std::filesystem::path faults;  ///< a script of what goes wrong; empty: nothing
+};
+/// Simulated rigs as USB devices, until SIGINT or SIGTERM.
+Result<void> simServe(const CommonOptions& common, const SimServeOptions& options);
+
 struct ScoreOptions {
     std::vector<std::filesystem::path> files;
     std::filesystem::path output;  ///< summary.json; empty: none

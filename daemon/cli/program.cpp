@@ -90,6 +90,41 @@ void Program::addSim() {
     });
     sub->add_option("files", score.files, ".gonio files of the simulated rig")->required();
     sub->add_option("-o,--output", score.output, "write the table as JSON here");
+
+    addSimServe(*sim);
+}
+
+void Program::addSimServe(CLI::App& sim) {
+    CLI::App* sub =
+        command(sim, "serve", "simulated rigs as USB devices, until Ctrl-C or SIGTERM", [this] {
+            return daemon::simServe(common, simServe);
+        });
+    sub->add_flag("--usbip", simServe.usbip, "over TCP, for `usbip attach` of any Linux");
+    sub->add_flag("--attach",
+                  simServe.attach,
+                  "to this computer's own USB, as root and with the module vhci-hcd");
+    sub->add_option("--port", simServe.port, "default: 3240; 0: a free one, which is said");
+    sub->add_option("--bind",
+                    simServe.bind,
+                    "default: 127.0.0.1; whoever reaches another address has the rigs, without a "
+                    "password");
+    sub->add_option("--serial", simServe.serials, "default: SIM-0001; each one is a rig");
+    sub->add_option("--place",
+                    simServe.placed,
+                    "what lies under each: black, white, zero, mirror, nothing (default), a file, "
+                    "model:SPEC or sample:NAME");
+    sub->add_option("--camera", simServe.camera, "usb2 (default) or usb3")
+        ->check(CLI::IsMember({"usb2", "usb3"}));
+    sub->add_option("--seed", simServe.seed, "seed of the rigs' noise, 0 or above; default: 1")
+        ->check(CLI::NonNegativeNumber);
+    sub->add_option("--systematic",
+                    simServe.systematic,
+                    "errors of the references: none, random (default), or stratum:K");
+    sub->add_option("--rig-errors", simServe.rigErrors, "as of sim place");
+    sub->add_option(
+        "--faults",
+        simServe.faults,
+        "a script of what goes wrong with each of them, and when: docs/fault-scripts.md");
 }
 
 void Program::addCalibration() {

@@ -22,6 +22,7 @@ struct Program {
     std::unique_ptr<CLI::App> app;
     CommonOptions common;
     PlaceRequest place;
+    SimServeOptions simServe;
     ScoreOptions score;
     VerifyOptions verify;
     std::string limit = "1%";
@@ -58,6 +59,7 @@ struct Program {
                       const std::string& help,
                       Command run);
     void addSim();
+    void addSimServe(CLI::App& sim);
     void addCalibration();
     void addGoal(CLI::App* sub);
     void addMeasuring();

@@ -1,0 +1,32 @@
+#pragma once
+// A connected stream socket that never blocks longer than it is told to, and that is closed with
+// its owner.
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "proc/core/stopwatch.h"
+
+namespace gonio::sim {
+
+class StreamSocket {
+public:
+    /// Takes the descriptor over.
+    explicit StreamSocket(int descriptor);
+    ~StreamSocket();
+    StreamSocket(StreamSocket&& other) noexcept;
+    StreamSocket& operator=(StreamSocket&& other) noexcept;
+
+    [[nodiscard]] int descriptor() const { return descriptor_; }
+    /// Bytes read, 0 when `wait` passed without any; empty: the other end is gone.
+    [[nodiscard]] std::optional<std::size_t> read(std::span<std::uint8_t> buffer, Nanoseconds wait);
+    /// False: the other end is gone, or took nothing for `patience`.
+    [[nodiscard]] bool write(std::span<const std::uint8_t> bytes, Nanoseconds patience);
+
+private:
+    int descriptor_;
+};
+
+}  // namespace gonio::sim

@@ -1,0 +1,78 @@
+#!/usr/bin/env bash
+# Boots Debian's kernel under QEMU and runs the tests of the real USB stack in it:
+#   tests/guest/run_guest.sh BUILD [FILTER]
+# BUILD is the build tree that holds the programs. Exit code 77 with one line where it cannot run, 1
+# with GONIO_REQUIRE_GUEST=1. The kernel is fetched once, into build/guest-kernel.
+set -euo pipefail
+source=$(cd "$(dirname "$0")/../.." && pwd)
+build=$1
+filter=${2-}
+kernel=$source/build/guest-kernel
+memory=1024
+
+skip() {
+    echo "SKIP guest: $1"
+    [ -z "${GONIO_REQUIRE_GUEST-}" ] || { echo "GONIO_REQUIRE_GUEST is set: this is a failure"; exit 1; }
+    exit 77
+}
+for tool in qemu-system-x86_64:qemu-system-x86 busybox:busybox-static cpio:cpio udevadm:udev; do
+    [ -n "$(PATH=$PATH:/usr/sbin:/sbin command -v "${tool%%:*}")" ] ||
+        skip "${tool%%:*} not found (apt-get install ${tool#*:})"
+done
+[ "$(uname -m)" = x86_64 ] || skip "not an x86-64: its programs do not run in the guest"
+begin=$(date +%s.%N)
+since() { awk -v a="$begin" -v b="$(date +%s.%N)" 'BEGIN { printf "%.1f s", b - a }'; }
+why=$("$source/config/tools/fetch_guest_kernel.sh" "$kernel" 2>&1) || skip "${why##*$'\n'}"
+echo "kernel $(cat "$kernel/version") there after $(since)"
+
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+root=$work/root
+mkdir -p "$root"/{bin,dev,lib,lib64,modules,proc,sys,tmp,run,etc/udev/rules.d}
+cp "$kernel"/*.ko "$root/modules/"
+cp "$(command -v busybox)" "$root/bin/busybox"
+cp "$(command -v udevadm)" "$root/bin/udevadm"
+ln -s udevadm "$root/bin/udevd"
+cp "$source/tests/guest/init.sh" "$root/init"
+chmod +x "$root/init"
+cp "$source/config/linux/70-gonio.rules" "$root/etc/udev/rules.d/"
+# The scripts of the fault matrix, where the program looks for them.
+mkdir -p "$root$source/tests/faults"
+cp -r "$source/tests/faults/scripts" "$root$source/tests/faults/"
+printf 'root:x:0:0::/:/bin/sh\nnobody:x:65534:65534::/:/bin/sh\n' >"$root/etc/passwd"
+printf 'root:x:0:\nplugdev:x:46:\nnogroup:x:65534:\n' >"$root/etc/group"
+programs=("$build/tests/guest/guest_test")
+for program in "${programs[@]}"; do
+    strip -o "$root/$(basename "$program")" "$program" 2>/dev/null || cp "$program" "$root/"
+done
+# With the libraries that they name, flat in /lib.
+ldd "${programs[@]}" "$(command -v udevadm)" | awk '$2 == "=>" && $3 ~ /^\// { print $3 }' | sort -u |
+    xargs -I{} cp -L {} "$root/lib/"
+cp -L /lib64/ld-linux-x86-64.so.2 "$root/lib64/"
+(cd "$root" && find . | cpio -o -H newc --quiet) >"$work/initrd"
+echo "image of $(($(stat -c %s "$work/initrd") >> 20)) MiB there after $(since)"
+
+accel=tcg
+if [ -r /dev/kvm ] && [ -w /dev/kvm ] && grep -qE '^flags.* (vmx|svm)( |$)' /proc/cpuinfo; then accel=kvm; fi
+boot() {
+    timeout --foreground 300 qemu-system-x86_64 -accel "$1" -M pc -m "$memory" -smp 2 \
+        -kernel "$kernel/vmlinux" -initrd "$work/initrd" -pidfile "$work/pid" \
+        -append "console=ttyS0 quiet panic=-1 nokaslr mitigations=off acpi=off ${filter:+gonio.filter=$filter}" \
+        -display none -nodefaults -no-reboot -serial stdio </dev/null 2>&1 | sed -u 's/\r$//' | tee "$work/serial"
+}
+ready() { grep -q '^GUEST ready' "$work/serial"; }
+# A KVM that starts and hangs is known: then emulation, which always works.
+if [ "$accel" = kvm ]; then
+    (
+        for _ in $(seq 100); do
+            sleep 0.1
+            ! ready || exit 0
+        done
+        kill "$(cat "$work/pid")"
+    ) 2>/dev/null &
+    boot kvm || true
+    ready || echo "NOTE guest: KVM does not boot it; once more by emulation"
+fi
+[ "$accel" = kvm ] && ready || boot tcg,thread=multi || true
+echo "guest ended after $(since)"
+exit "$(sed -n 's/^GUEST_EXIT //p' "$work/serial" | grep -E '^[01]$' || echo 1)"
