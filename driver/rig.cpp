@@ -212,7 +212,8 @@ Result<Capture> Rig::capture(const CaptureRequest& request,
                    .anomalies = anomalies().since(before),
                    .discarded = progress.discarded,
                    .resends = progress.resends,
-                   .recaptures = progress.recaptures};
+                   .recaptures = progress.recaptures,
+                   .evidence = progress.evidence()};
 }
 
 /// The error with its evidence.

@@ -75,9 +75,10 @@ struct ArmAhead {
 struct Capture {
     std::vector<Frame> frames;
     Anomalies anomalies;
-    int discarded = 0;   ///< frames from before the settings took effect
-    int resends = 0;     ///< RESEND commands
-    int recaptures = 0;  ///< captures taken again after RESEND was not enough
+    int discarded = 0;       ///< frames from before the settings took effect
+    int resends = 0;         ///< RESEND commands
+    int recaptures = 0;      ///< captures taken again after RESEND was not enough
+    std::string evidence{};  ///< what was wrong with the first frames that were taken again
 
     [[nodiscard]] std::size_t size() const { return frames.size(); }
     [[nodiscard]] const Frame& front() const { return frames.front(); }
