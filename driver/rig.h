@@ -15,12 +15,14 @@
 // commands. Frames of the two are told apart by capture_id, and each keeps its repairs.
 //
 // A rig that is lost comes back when onLost() has said how (comeback.h), in capture(), configure(),
-// darken() and keepAlive(); else, and when its owner gives up, the call fails and the rig stays
-// lost until the next such call. Of the same boot: frames that the rig still holds are sent again,
-// the others are exposed again, which is no recapture; what was armed ahead is forgotten. Of
-// another boot (it lost its power): the format is set again, and capture() is a Device error that
-// says so, once, the one that was interrupted or the next: what belongs to one bracket must be
-// taken again. configure() begins anew. Another serial number is never taken back.
+// darken() and keepAlive(); else, when its owner gives up, and after twenty times in one call, the
+// call fails and the rig stays lost until the next such call. So it does at once when its stream
+// has failed three times in ten seconds: the rig is there, and would fail again. Of the same boot:
+// frames that the rig still holds are sent again, the others are exposed again, which is no
+// recapture; what was armed ahead is forgotten. Of another boot (it lost its power): the format is
+// set again, and capture() is a Device error that says so, once, the one that was interrupted or
+// the next: what belongs to one bracket must be taken again. configure() begins anew. Another
+// serial number is never taken back.
 
 #include <cstdint>
 #include <memory>

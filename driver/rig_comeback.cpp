@@ -18,8 +18,7 @@ constexpr int kMostComebacks = 20;
 }  // namespace
 
 Result<void> Rig::comeBack(const Error& lost) {
-    // A stream that fails again and again is a fault: the rig is there, and would fail again. It
-    // ends the call; the next one may try.
+    // A fault of the stream ends the call; the next one may try.
     if (lost.deviceStatus == status::kLink && !std::exchange(faultTold_, true)) return lost;
     if (comebacks_ >= mostComebacks_) return lostTooOften(lost);
     const std::uint32_t boot = boot_;  // another one may have been seen since, and lost again
