@@ -11,19 +11,33 @@ namespace {
 
 constexpr double kFullLevel = 65535;
 
-std::string listed(std::span<const OddFrame> odd, OddFrame::Kind kind) {
+std::string_view finding(Setback::Cause kind) {
+    switch (kind) {
+        case Setback::Cause::Repeated: return "is bit for bit the picture before";
+        case Setback::Cause::Blank: return "is no picture: all pixels are alike, without noise";
+        case Setback::Cause::Unlit: return "shows not even 1e-4 of the white's light";
+        case Setback::Cause::Exposure: return "does not have the light of its exposure";
+        case Setback::Cause::Reflex: return "is saturated where the sample is dim: a reflex";
+        default: return "is not what was asked for";
+    }
+}
+
+std::string listed(std::span<const OddFrame> odd, bool dropped) {
     constexpr int kMost = 5;
     std::string list;
     int count = 0;
     for (const OddFrame& one : odd) {
-        if (one.kind != kind || ++count > kMost) continue;
-        list += (list.empty() ? "" : ", ") + std::to_string(one.number) + " (" +
-                stateName(one.state) + ")";
+        if (one.dropped != dropped || ++count > kMost) continue;
+        list += (list.empty() ? "" : "; ") + bracketName(one.state) + ": " + one.text();
     }
-    return count > kMost ? list + " and " + std::to_string(count - kMost) + " more" : list;
+    return count > kMost ? list + "; and " + std::to_string(count - kMost) + " more" : list;
 }
 
 }  // namespace
+
+std::string OddFrame::text() const {
+    return "frame " + std::to_string(number) + " " + std::string(finding(kind));
+}
 
 WhiteRates whiteRates(const PlacementSignals& white, const Window& window) {
     WhiteRates rates;
@@ -42,23 +56,49 @@ WhiteRates whiteRates(const PlacementSignals& white, const Window& window) {
     return rates;
 }
 
-FrameWatch::FrameWatch(const proc::DarkLibrary& darks,
-                       const proc::SensorNoise& noise,
-                       WhiteRates white)
-    : darks_(darks), noise_(noise), white_(std::move(white)) {}
+void FrameWatch::expect(const proc::DarkLibrary& darks, WhiteRates white) {
+    darks_ = &darks;
+    white_ = std::move(white);
+}
 
-void FrameWatch::see(State state, const Frame& frame) {
-    if (before_ && proc::isRepeated(frame, *before_, noise_))
-        odd_.push_back({state, frame.number, OddFrame::Kind::Repeated});
-    if (frame.index == 0 && lacksLight(state, frame))
-        odd_.push_back({state, frame.number, OddFrame::Kind::WithoutLight});
-    before_ = frame;
+void FrameWatch::begin(const Frame* earlier) {
+    first_ = true;
+    earlier_ = earlier;
+}
+
+std::optional<OddFrame> FrameWatch::see(std::optional<State> state, const Frame& frame) {
+    if (const auto kind = wrong(state, frame))
+        return OddFrame{.state = state, .number = frame.number, .kind = *kind};
+    last_ = frame;
+    first_ = false;
+    earlier_ = nullptr;
+    return std::nullopt;
+}
+
+std::optional<Setback::Cause> FrameWatch::wrong(std::optional<State> state,
+                                                const Frame& frame) const {
+    if (last_ && proc::isRepeated(frame, *last_, noise_)) return Cause::Repeated;
+    if (proc::isBlank(frame, noise_)) return Cause::Blank;
+    if (!state) return std::nullopt;
+    if (frame.index == 0 && lacksLight(*state, frame)) return Cause::Unlit;
+    return disagrees(*state, frame);
+}
+
+std::optional<Setback::Cause> FrameWatch::disagrees(State state, const Frame& frame) const {
+    const Frame* const before = first_ ? earlier_ : &*last_;
+    if (before == nullptr || before->led != frame.led || before->levels[state.band] == 0)
+        return std::nullopt;
+    switch (proc::agreement(frame, *before, state.band, noise_)) {
+        case proc::Agreement::Agrees: return std::nullopt;
+        case proc::Agreement::Reflex: return Cause::Reflex;
+        default: return Cause::Exposure;
+    }
 }
 
 bool FrameWatch::lacksLight(State state, const Frame& frame) const {
     const auto led = static_cast<std::size_t>(state.led);
-    if (led >= white_.size()) return false;
-    const Result<const proc::DarkFrame*> dark = darks_.find(frame);
+    if (darks_ == nullptr || led >= white_.size()) return false;
+    const Result<const proc::DarkFrame*> dark = darks_->find(frame);
     if (!dark) return false;
     const double level = frame.levels[state.band] / kFullLevel;
     const double electrons = white_[led][index(state.band)] * level * frame.exposure.seconds();
@@ -69,20 +109,16 @@ proc::Verdict framesVerdict(std::span<const OddFrame> odd) {
     proc::Verdict verdict{.name = "frames",
                           .grade = proc::Grade::Ok,
                           .figure = {},
-                          .evidence = "no picture came twice or without light",
+                          .evidence = "each picture is what was asked for",
                           .next = {}};
-    const std::string repeated = listed(odd, OddFrame::Kind::Repeated);
-    const std::string without = listed(odd, OddFrame::Kind::WithoutLight);
-    if (repeated.empty() && without.empty()) return verdict;
-    verdict.grade = repeated.empty() ? proc::Grade::Warned : proc::Grade::Refused;
-    verdict.evidence.clear();
-    if (!repeated.empty()) verdict.evidence = "bit for bit the picture before: frames " + repeated;
-    if (!without.empty()) {
-        verdict.evidence += (repeated.empty() ? "" : "; ") +
-                            ("not even 1e-4 of the white's light: frames " + without);
-    }
-    verdict.next = repeated.empty() ? "see that the LEDs light, and that a sample lies there"
-                                    : "unplug the camera for a moment, and measure again";
+    const std::string again = listed(odd, true), without = listed(odd, false);
+    if (again.empty() && without.empty()) return verdict;
+    verdict.grade = proc::Grade::Warned;
+    verdict.evidence = without;
+    if (!again.empty())
+        verdict.evidence += (without.empty() ? "taken again: " : "; taken again: ") + again;
+    verdict.next = without.empty() ? "see to the rig's cable and camera, and keep lights away"
+                                   : "see that the LEDs light, and that a sample lies there";
     return verdict;
 }
 

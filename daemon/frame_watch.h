@@ -1,15 +1,17 @@
 #pragma once
 // Whether pictures are what was asked for, though they came whole and with the right numbers
-// (proc/quality/frame_check.h): each frame of a state against the one before it in that state's
-// sums (its pilots come first), and the first of each capture against the light that it must show.
+// (proc/quality/frame_check.h): each frame against the one before it in its bracket, and the first
+// of each capture against the light that it must show.
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "daemon/attendance.h"
 #include "daemon/rig_calibration.h"
-#include "daemon/sequencer.h"
+#include "daemon/state.h"
 #include "proc/quality/verdict.h"
 #include "proc/radiance/dark.h"
 
@@ -17,12 +19,13 @@ namespace gonio::daemon {
 
 /// A frame that is not what was asked for.
 struct OddFrame {
-    State state;
-    std::uint32_t number = 0;  ///< the rig's
-    enum class Kind {
-        Repeated,
-        WithoutLight
-    } kind = Kind::Repeated;
+    std::optional<State> state{};  ///< empty: dark
+    std::uint32_t number = 0;      ///< the rig's
+    Setback::Cause kind = Setback::Cause::Repeated;
+    bool dropped = true;  ///< its bracket was taken again without it
+
+    /// "frame 777 is bit for bit the picture before".
+    [[nodiscard]] std::string text() const;
 };
 
 /// The mean light of a white reference, electrons per second and pixel of the window at full level;
@@ -32,23 +35,30 @@ using WhiteRates = std::vector<std::array<double, 3>>;
 
 class FrameWatch {
 public:
-    /// Without white rates no frame is held against the light. `darks` is borrowed.
-    FrameWatch(const proc::DarkLibrary& darks, const proc::SensorNoise& noise, WhiteRates white);
+    explicit FrameWatch(const proc::SensorNoise& noise) : noise_(noise) {}
 
-    void see(State state, const Frame& frame);
-    [[nodiscard]] const std::vector<OddFrame>& odd() const { return odd_; }
+    /// From now on a lit frame that is as good as dark is odd. `darks` is borrowed.
+    void expect(const proc::DarkLibrary& darks, WhiteRates white);
+    /// A bracket begins. `earlier`: a sound frame of it, taken before; borrowed until the next one.
+    void begin(const Frame* earlier = nullptr);
+    /// What is odd about the next frame of the bracket; one that is not is held against the next.
+    [[nodiscard]] std::optional<OddFrame> see(std::optional<State> state, const Frame& frame);
 
 private:
+    using Cause = Setback::Cause;
+    [[nodiscard]] std::optional<Cause> wrong(std::optional<State> state, const Frame& frame) const;
+    [[nodiscard]] std::optional<Cause> disagrees(State state, const Frame& frame) const;
     [[nodiscard]] bool lacksLight(State state, const Frame& frame) const;
 
-    const proc::DarkLibrary& darks_;
     proc::SensorNoise noise_;
+    const proc::DarkLibrary* darks_ = nullptr;
     WhiteRates white_;
-    std::optional<Frame> before_;
-    std::vector<OddFrame> odd_;
+    std::optional<Frame> last_;       ///< that was sound, of whatever bracket
+    bool first_ = true;               ///< in its bracket: the last one is of another
+    const Frame* earlier_ = nullptr;  ///< what the first one is held against
 };
 
-/// `frames`: refused with a repeated one, warned with one that shows no light.
+/// `frames`: warned of those that had to be taken again, and of those that show no light.
 [[nodiscard]] proc::Verdict framesVerdict(std::span<const OddFrame> odd);
 
 }  // namespace gonio::daemon

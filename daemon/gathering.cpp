@@ -88,8 +88,7 @@ proc::MergeAccumulator Processing::accumulator() const {
 Gathering::Gathering(driver::Rig& rig, const Processing& processing)
     : rig_(rig),
       processing_(processing),
-      brackets_{{{{}, processing.accumulator(), {}}, {{}, processing.accumulator(), {}}}},
-      watch_(processing.darks, processing.profile.noise, processing.white) {
+      brackets_{{{{}, processing.accumulator(), {}}, {{}, processing.accumulator(), {}}}} {
     captured_.signals.resize(rig.identify().ledAngles.size());
 }
 
@@ -104,7 +103,6 @@ Result<void> Gathering::add(const Frame& frame) {
     const Stopwatch adding(processing_.clock);
     Bracket& bracket = atHand();
     note(frame, bracket.state.band, bracket.exposures);
-    watch_.see(bracket.state, frame);
     Result<void> added = bracket.sums.add(frame);
     adding_ += adding.elapsed();
     return added;
@@ -138,7 +136,6 @@ Result<void> Gathering::settle() {
 
 Result<Captured> Gathering::finish() {
     if (Result<void> last = settle(); !last) return last.error();
-    captured_.oddFrames = watch_.odd();
     captured_.chiSquarePerFreedom = freedom_ > 0 ? chiSquare_ / freedom_ : 1;
     return std::move(captured_);
 }

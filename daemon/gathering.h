@@ -34,7 +34,6 @@ struct Processing {
     const Corrections& corrections;
     const RigProfile& profile;
     const Clock& clock;
-    WhiteRates white{};  ///< what a frame without light is told by (frame_watch.h)
 
     /// Puts the effective times of the bracket right first, as far as its pictures tell that they
     /// are wrong. `exposures`: the bracket's, whose scales are set.
@@ -55,7 +54,7 @@ public:
     Gathering(const Gathering&) = delete;
     Gathering& operator=(const Gathering&) = delete;
 
-    /// Another state, whose frames come next.
+    /// A state, whose frames come next. Called twice, what came of it the first time is void.
     void begin(State state);
     [[nodiscard]] Result<void> add(const Frame& frame);
     /// The state is complete; an error is that of the one before.
@@ -80,7 +79,6 @@ private:
     Seconds adding_{0};       ///< frames, of the state at hand
     Captured captured_;
     double chiSquare_ = 0, freedom_ = 0;
-    FrameWatch watch_;
     std::optional<Alongside<Processed>> running_;
 };
 

@@ -44,8 +44,14 @@ Result<void> GlareViews::take(const proc::Wedge& wedge,
         if (view->wedge != wedge) continue;
         if (Result<void> on = bench_.step("glare LED " + std::to_string(led_)); !on) return on;
         proc::MergeAccumulator sums(Band::G, darks, bench_.profile.noise, bench_.profile.response);
-        const Result<void> taken = sequencer.bracket(
-            {led_, Band::G}, kBracket, [&](const Frame& frame) { return sums.add(frame); });
+        const Result<void> taken =
+            sequencer.bracket({led_, Band::G},
+                              kBracket,
+                              {.frame = [&](const Frame& frame) { return sums.add(frame); },
+                               .begin = [&]() -> Result<void> {
+                                   sums.restart(Band::G);
+                                   return {};
+                               }});
         if (!taken) return taken;
         auto merged = proc::mergeSums(sums.sums());
         if (!merged) return merged.error();

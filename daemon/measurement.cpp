@@ -64,7 +64,7 @@ Json toJson(const proc::Budget& budget) {
 Result<LensRecord> takeLens(const Bench& bench, const PlaceMirror& place) {
     const Result<Window> window = configureWindow(bench.rig);
     if (!window) return window.error();
-    Sequencer sequencer(bench.rig, bench.profile, bench.nextPlanStep, bench.alive);
+    Sequencer sequencer(bench.rig, bench.profile, bench.nextPlanStep, bench.attendance);
     const Result<proc::DarkLibrary> darks = takeDarks(bench, sequencer, kMirrorFrames);
     if (!darks) return darks.error();
     const std::vector<Radians> leds = bench.rig.identify().ledAngles;
@@ -114,7 +114,7 @@ Result<Captured> capturePlacement(const Bench& bench,
     const Result<Window> window = configureWindow(bench.rig);
     if (!window) return window.error();
     if (Result<void> fit = fits(bench.corrections, *window); !fit) return fit.error();
-    Sequencer sequencer(bench.rig, bench.profile, bench.nextPlanStep, bench.alive);
+    Sequencer sequencer(bench.rig, bench.profile, bench.nextPlanStep, bench.attendance);
     Result<proc::DarkLibrary> darks = takeDarks(bench, sequencer, darkFrames);
     if (!darks) return darks.error();
     const Stopwatch preparing(bench.clock);
@@ -135,9 +135,15 @@ Result<Captured> capturePlacement(const Bench& bench,
     const std::vector<State> states = sequencer.states();
     for (std::size_t i = 0; i < states.size(); ++i) {
         const auto then = i + 1 < states.size() ? std::optional(states[i + 1]) : std::nullopt;
-        gathering.begin(states[i]);
-        const Result<void> taken = sequencer.bracket(
-            states[i], plan, [&](const Frame& frame) { return gathering.add(frame); }, then);
+        const Result<void> taken =
+            sequencer.bracket(states[i],
+                              plan,
+                              {.frame = [&](const Frame& frame) { return gathering.add(frame); },
+                               .begin = [&]() -> Result<void> {
+                                   gathering.begin(states[i]);
+                                   return {};
+                               }},
+                              then);
         if (!taken) return taken.error();
         if (Result<void> on = gathering.end(); !on) return on.error();
         if (Result<void> on = bench.step(stateName(states[i])); !on) return on.error();
@@ -145,6 +151,7 @@ Result<Captured> capturePlacement(const Bench& bench,
     Result<Captured> captured = gathering.finish();
     if (!captured) return captured;
     captured->compute += prepared;
+    captured->oddFrames = sequencer.oddFrames();
     captured->freshDarks = *darks;
     captured->darks = std::move(*darks);
     return captured;

@@ -33,8 +33,7 @@ struct Bench {
     const Clock& clock;  ///< of the computer, for compute seconds
     /// One step of progress is done; an error that it returns ends the measurement.
     std::function<Result<void>(const std::string&)> step;
-    /// It goes on: every few seconds at least, between two steps.
-    std::function<void()> alive = [] {};
+    Attendance attendance{};
     /// How a planned run stands against its plan, after each state.
     std::function<void(const proc::Progress&)> outlook = [](const proc::Progress&) {};
     /// The lens's glare, which signals are put right by; empty: none is taken off.

@@ -54,7 +54,7 @@ PlannedRun::PlannedRun(const Bench& bench,
     : bench_(bench),
       references_(references),
       goal_(goal),
-      sequencer_(bench.rig, bench.profile, bench.nextPlanStep, bench.alive),
+      sequencer_(bench.rig, bench.profile, bench.nextPlanStep, bench.attendance),
       states_(sequencer_.states()),
       responsivities_(references, bench.rig.identify().ledAngles),
       floor_(floorOf(references)),
@@ -73,7 +73,10 @@ proc::PlanInput PlannedRun::input() const {
 
 std::vector<KnownShot> PlannedRun::pilotShots(State state) const {
     std::vector<KnownShot> shots;
-    for (const proc::ShotKind& kind : rig_.pilotShots()) shots.push_back(shotOf(state, kind, 1));
+    for (const proc::ShotKind& kind : rig_.pilotShots()) {
+        shots.push_back(shotOf(state, kind, 1));
+        shots.back().joins = shots.size() > 1;
+    }
     return shots;
 }
 
@@ -107,8 +110,12 @@ Result<const proc::Plan*> PlannedRun::plan() {
 /// Pilots state by state, each learnt from beside the next; then dark frames, beside the planning.
 Result<void> PlannedRun::takePilots() {
     std::vector<KnownShot> shots;
-    for (const State state : states_) {
-        for (const KnownShot& shot : pilotShots(state)) shots.push_back(shot);
+    for (std::size_t state = 0; state < states_.size(); ++state) {
+        pilots_[state].shots = pilotShots(states_[state]);
+        for (KnownShot& shot : pilots_[state].shots) {
+            shot.planStep = bench_.nextPlanStep++;
+            shots.push_back(shot);
+        }
     }
     const std::size_t pilots = shots.size(), perState = pilots / states_.size();
     for (const Seconds exposure : proc::pilotExposures(rig_))
@@ -119,7 +126,7 @@ Result<void> PlannedRun::takePilots() {
                         {.frame = [&](std::size_t shot, Frame&& frame) -> Result<void> {
                              if (shot >= pilots) return addDark(shots[shot].shot.exposure, frame);
                              if (shot == 0) rig_.sensor.celsius = sensorCelsius(frame);
-                             pilots_[shot / perState].push_back(std::move(frame));
+                             pilots_[shot / perState].frames.push_back(std::move(frame));
                              return {};
                          },
                          .done = [&](std::size_t shot) -> Result<void> {
@@ -136,27 +143,41 @@ Result<void> PlannedRun::takePilots() {
                                  });
                              }
                              return bench_.step("dark frames, planning");
+                         },
+                         .begin = [&](std::size_t shot) -> Result<void> {
+                             if (shot < pilots) {
+                                 beginPilots(shot / perState);
+                             } else {
+                                 beginDark(shots[shot].shot.exposure);
+                             }
+                             return {};
                          }});
     if (!taken) return taken;
     const Stopwatch waiting(bench_.clock);
-    Result<proc::Plan> plan = planning->await(bench_.rig, bench_.alive);
+    Result<proc::Plan> plan = planning->await(bench_.rig, bench_.attendance.alive);
     if (!plan) return plan.error();
     compute_ += waiting.elapsed();
     plan_ = std::move(*plan);
     return {};
 }
 
+void PlannedRun::beginPilots(std::size_t state) {
+    pilots_[state].frames.clear();
+    pilots_[state].boot = bench_.rig.bootId();
+    if (learnt_.size() == state) learning_.reset();  // from those that are void now
+}
+
 /// Begins to learn from a state's pilots, once what is being learnt is known.
 Result<void> PlannedRun::learn(std::size_t state) {
     if (seeing_) {
-        const Result<void> seen = seeing_->await(bench_.rig, bench_.alive);
+        const Result<void> seen = seeing_->await(bench_.rig, bench_.attendance.alive);
         seeing_.reset();
         if (!seen) return seen;
     }
     if (Result<void> last = settle(); !last) return last;
     learning_.emplace([this, state]() -> Result<proc::StatePilot> {
         const State of = states_[state];
-        const std::vector<Frame>& frames = pilots_[state];
+        const std::vector<Frame>& frames = pilots_[state].frames;
         const auto merged =
             proc::merge(frames, of.band, nominalDarks(frames, rig_.sensor), bench_.profile.noise);
         if (!merged) return merged.error();
@@ -171,17 +192,29 @@ Result<void> PlannedRun::learn(std::size_t state) {
 
 Result<void> PlannedRun::settle() {
     if (!learning_) return {};
-    Result<proc::StatePilot> learnt = learning_->await(bench_.rig, bench_.alive);
+    Result<proc::StatePilot> learnt = learning_->await(bench_.rig, bench_.attendance.alive);
     learning_.reset();
     if (!learnt) return learnt.error();
     learnt_.push_back(std::move(*learnt));
     return {};
 }
 
+/// Once more for the same exposure: what was added since is void.
+void PlannedRun::beginDark(Microseconds exposure) {
+    DarkSums& now =
+        darkSums_.try_emplace(exposure, DarkSums{proc::DarkAverage(bench_.profile.noise)})
+            .first->second;
+    if (darksBefore_ && darksBefore_->first == exposure) {
+        now = darksBefore_->second;
+    } else {
+        darksBefore_.emplace(exposure, now);
+    }
+}
+
 Result<void> PlannedRun::addDark(Microseconds exposure, const Frame& frame) {
-    const auto sums = darkSums_.try_emplace(exposure, bench_.profile.noise).first;
-    ++darksTaken_[exposure];
-    return sums->second.add(frame);
+    DarkSums& now = darkSums_.at(exposure);
+    ++now.frames;
+    return now.sums.add(frame);
 }
 
 Result<Captured> PlannedRun::capture() {
@@ -190,17 +223,24 @@ Result<Captured> PlannedRun::capture() {
 }
 
 Result<void> PlannedRun::takeDarks() {
+    darksBefore_.reset();
     std::vector<KnownShot> shots;
     for (const proc::DarkCapture& dark : plan_->darks) {
-        const int more = dark.frames - darksTaken_[asked(dark.exposure)];
+        const auto some = darkSums_.find(asked(dark.exposure));
+        const int more = dark.frames - (some == darkSums_.end() ? 0 : some->second.frames);
         if (more > 0) shots.push_back(shotOf({}, {.exposure = dark.exposure}, more));
     }
     const Result<void> taken = sequencer_.take(
         shots,
         {.frame = [&](std::size_t shot,
                       const Frame& frame) { return addDark(shots[shot].shot.exposure, frame); },
-         .done = [&](std::size_t) { return bench_.step("dark frames"); }});
+         .done = [&](std::size_t) { return bench_.step("dark frames"); },
+         .begin = [&](std::size_t shot) -> Result<void> {
+             beginDark(shots[shot].shot.exposure);
+             return {};
+         }});
     if (!taken) return taken;
+    darksBefore_.reset();
     std::map<Microseconds, const proc::DarkFrame*> held;
     if (rig_.darkFramesHeld > 0) {
         for (const proc::DarkFrame& dark : bench_.darks) {
@@ -209,7 +249,7 @@ Result<void> PlannedRun::takeDarks() {
         }
     }
     for (const auto& [exposure, sums] : darkSums_) {
-        Result<proc::DarkFrame> dark = sums.mean();
+        Result<proc::DarkFrame> dark = sums.sums.mean();
         if (!dark) return dark.error();
         freshDarks_.add(*dark);
         const auto same = held.find(exposure);
@@ -222,74 +262,145 @@ Result<void> PlannedRun::takeDarks() {
     return {};
 }
 
-Result<Captured> PlannedRun::takeStates() {
-    Gathering gathering(
-        bench_.rig,
-        {.darks = darks_,
-         .binning = *binning_,
-         .glare = *glare_,
-         .corrections = bench_.corrections,
-         .profile = bench_.profile,
-         .clock = bench_.clock,
-         .white = whiteRates(references_.white.signals, pilots_.front().front().window)});
-    std::vector<KnownShot> shots;
-    std::vector<std::size_t> stateOf;  // of each shot; behind the last: the repeated pilots
-    const auto list = [&](std::size_t state, const KnownShot& shot) {
-        shots.push_back(shot);
-        stateOf.push_back(state);
+/// Pilots of another boot than the rig's are not mixed with what it takes now.
+bool PlannedRun::stale(std::size_t state) const {
+    return pilots_[state].boot != bench_.rig.bootId();
+}
+
+std::vector<PlannedRun::Planned> PlannedRun::allCaptures() {
+    std::vector<Planned> all;
+    const auto list = [&](std::size_t state, KnownShot shot) {
+        shot.joins = !all.empty() && all.back().state == state;
+        shot.planStep = bench_.nextPlanStep++;
+        all.push_back({.shot = shot, .state = state, .count = all.size() + 1});
     };
     for (std::size_t s = 0; s < states_.size(); ++s) {
         for (const proc::PlannedCapture& planned : plan_->states[s].captures)
             list(s, shotOf(states_[s], planned.shot, planned.frames));
     }
     for (const KnownShot& shot : pilotShots(states_.front())) list(states_.size(), shot);
+    return all;
+}
 
-    std::size_t open = 0;  // the state at hand
-    const auto begin = [&]() -> Result<void> {
-        gathering.begin(states_[open]);
-        for (const Frame& pilot : pilots_[open])
-            if (Result<void> added = gathering.add(pilot); !added) return added;
-        if (open > 0) pilots_[open] = {};  // the first state's are compared with at the end
-        return {};
-    };
-    // All states before `state` are complete, and it begins.
-    const auto advanceTo = [&](std::size_t state) -> Result<void> {
-        while (open < state) {
-            if (Result<void> ended = gathering.end(); !ended) return ended;
-            if (Result<void> on = bench_.step(stateName(states_[open])); !on) return on;
-            if (++open == states_.size()) return {};
-            if (Result<void> begun = begin(); !begun) return begun;
+/// From the state at hand on, each behind its pilots where those are stale.
+std::vector<PlannedRun::Planned> PlannedRun::left(const Taking& now) const {
+    std::vector<Planned> list;
+    for (const Planned& planned : now.all) {
+        if (planned.state < now.open) continue;
+        const bool again = planned.state < states_.size() && stale(planned.state);
+        if (again && !planned.shot.joins) {
+            for (const KnownShot& pilot : pilots_[planned.state].shots) {
+                list.push_back({.shot = pilot,
+                                .state = planned.state,
+                                .count = planned.count - 1,
+                                .pilot = true});
+            }
         }
-        return {};
-    };
-    std::vector<Frame> again;
-    if (Result<void> begun = begin(); !begun) return begun.error();
-    const Result<void> taken = sequencer_.take(
-        shots,
-        {.frame = [&](std::size_t shot, Frame&& frame) -> Result<void> {
-             if (Result<void> on = advanceTo(stateOf[shot]); !on) return on;
-             if (stateOf[shot] < states_.size()) return gathering.add(frame);
-             again.push_back(std::move(frame));
-             return {};
-         },
-         .done = [&](std::size_t shot) -> Result<void> {
-             const bool last = shot + 1 == shots.size() || stateOf[shot + 1] != stateOf[shot];
-             if (last) tellOutlook(shot + 1);
-             return {};
-         }});
-    if (!taken) return taken.error();
+        list.push_back(planned);
+        list.back().shot.joins = again || planned.shot.joins;
+    }
+    return list;
+}
+
+Result<Captured> PlannedRun::takeStates() {
+    const Window window = pilots_.front().frames.front().window;
+    Gathering gathering(bench_.rig,
+                        {.darks = darks_,
+                         .binning = *binning_,
+                         .glare = *glare_,
+                         .corrections = bench_.corrections,
+                         .profile = bench_.profile,
+                         .clock = bench_.clock});
+    sequencer_.watch().expect(darks_, whiteRates(references_.white.signals, window));
+    Taking now{.gathering = gathering, .all = allCaptures()};
+    do {
+        now.stale = false;
+        now.list = left(now);
+        const Result<void> taken = takeList(now);
+        if (!taken && !now.stale) return taken.error();
+    } while (now.stale);
     Result<Captured> captured = gathering.finish();
     if (!captured) return captured;
     const Stopwatch comparing(bench_.clock);
-    Result<Repeat> repeat = alongside(bench_.rig, bench_.alive, [&] { return repeated(again); });
+    Result<Repeat> repeat =
+        alongside(bench_.rig, bench_.attendance.alive, [&] { return repeated(now.again); });
     if (!repeat) return repeat.error();
     captured->repeat = std::move(*repeat);
     captured->compute += compute_ + comparing.elapsed();
+    captured->oddFrames = sequencer_.oddFrames();
     captured->darks = std::move(darks_);
     captured->freshDarks = std::move(freshDarks_);
     if (Result<void> on = bench_.step(stateName(states_.front()) + " again"); !on)
         return on.error();
     return captured;
+}
+
+Result<void> PlannedRun::takeList(Taking& now) {
+    std::vector<KnownShot> shots;
+    for (const Planned& planned : now.list) shots.push_back(planned.shot);
+    return sequencer_.take(
+        shots,
+        {.frame = [&](std::size_t shot,
+                      Frame&& frame) { return add(now, now.list[shot], std::move(frame)); },
+         .done = [&](std::size_t shot) -> Result<void> {
+             const bool last =
+                 shot + 1 == shots.size() || now.list[shot + 1].state != now.list[shot].state;
+             if (last) tellOutlook(now.list[shot].count);
+             return {};
+         },
+         .begin = [&](std::size_t shot) { return begin(now, now.list[shot]); }});
+}
+
+/// A state's bracket begins with this capture, perhaps not for the first time.
+Result<void> PlannedRun::begin(Taking& now, const Planned& first) {
+    if (Result<void> on = advanceTo(now, first.state); !on) return on;
+    if (first.state == states_.size()) {
+        now.again.clear();
+        return {};
+    }
+    if (first.pilot) {
+        pilots_[now.open].frames.clear();
+        pilots_[now.open].boot = bench_.rig.bootId();
+    } else if (stale(now.open)) {
+        now.stale = true;
+        return Error{ErrorKind::Internal, "the pilots are of another boot"};
+    }
+    return openState(now);
+}
+
+Result<void> PlannedRun::openState(Taking& now) {
+    now.begun = true;
+    now.gathering.begin(states_[now.open]);
+    const std::vector<Frame>& pilots = pilots_[now.open].frames;
+    for (const Frame& pilot : pilots)
+        if (Result<void> added = now.gathering.add(pilot); !added) return added;
+    sequencer_.watch().begin(pilots.empty() ? nullptr : &pilots.back());
+    return {};
+}
+
+/// All states before `state` are complete.
+Result<void> PlannedRun::advanceTo(Taking& now, std::size_t state) {
+    while (now.open < state) {
+        if (!now.begun) {
+            if (Result<void> pilotsOnly = openState(now); !pilotsOnly) return pilotsOnly;
+        }
+        now.begun = false;
+        if (Result<void> ended = now.gathering.end(); !ended) return ended;
+        if (Result<void> on = bench_.step(stateName(states_[now.open])); !on) return on;
+        // The first state's are compared with at the end.
+        if (now.open > 0) pilots_[now.open].frames = {};
+        ++now.open;
+    }
+    return {};
+}
+
+Result<void> PlannedRun::add(Taking& now, const Planned& planned, Frame&& frame) {
+    if (planned.state == states_.size()) {
+        now.again.push_back(std::move(frame));
+        return {};
+    }
+    if (planned.pilot) pilots_[planned.state].frames.push_back(frame);
+    return now.gathering.add(frame);
 }
 
 Result<Repeat> PlannedRun::repeated(const std::vector<Frame>& again) const {
@@ -302,7 +413,7 @@ Result<Repeat> PlannedRun::repeated(const std::vector<Frame>& again) const {
         for (const Frame& frame : frames) note(frame, state.band, raw.bracket);
         return daemon::signalOf(raw, bench_.corrections, *glare_, *binning_);
     };
-    Result<proc::CellSignal> first = signalOf(pilots_.front());
+    Result<proc::CellSignal> first = signalOf(pilots_.front().frames);
     if (!first) return first.error();
     Result<proc::CellSignal> last = signalOf(again);
     if (!last) return last.error();

@@ -5,6 +5,9 @@
 // up as they arrive; at last the pilots of the first state again, which show what has changed
 // meanwhile. The same placement always makes the same captures, however fast the host is.
 //
+// Pilots and captures of a state are one bracket: where the rig has booted between them, its pilots
+// are taken again before its captures, by their own plan steps.
+//
 // Memory: the pilots, three pictures of 2 MB a state, until their state is captured; then its
 // merged picture, 10 MB; and the sums of two states (merge_accumulator.h).
 
@@ -37,12 +40,50 @@ public:
     [[nodiscard]] proc::Prediction achieved(const Captured& captured) const;
 
 private:
+    /// A state's pilots: how they are taken, what came of them, and in which boot of the rig.
+    struct Pilots {
+        std::vector<KnownShot> shots;
+        std::vector<Frame> frames;
+        std::uint32_t boot = 0;
+    };
+    /// A capture of a state.
+    struct Planned {
+        KnownShot shot;
+        std::size_t state = 0;  ///< behind the last: the first one's pilots once more
+        std::size_t count = 0;  ///< of the captures, when it is there
+        bool pilot = false;     ///< that is taken again
+    };
+    /// The states while they are captured.
+    struct Taking {
+        Gathering& gathering;
+        std::vector<Planned> all;
+        std::vector<Planned> list{};  ///< what is left of them
+        std::size_t open = 0;         ///< the state at hand
+        bool begun = false;
+        bool stale = false;  ///< its pilots are, and the list does not have them
+        std::vector<Frame> again{};
+    };
+    /// Dark frames of one exposure, so far.
+    struct DarkSums {
+        proc::DarkAverage sums;
+        int frames = 0;
+    };
     [[nodiscard]] std::vector<KnownShot> pilotShots(State state) const;
+    [[nodiscard]] std::vector<Planned> allCaptures();
+    [[nodiscard]] std::vector<Planned> left(const Taking& now) const;
+    [[nodiscard]] bool stale(std::size_t state) const;
+    [[nodiscard]] Result<void> takeList(Taking& now);
+    [[nodiscard]] Result<void> begin(Taking& now, const Planned& first);
+    [[nodiscard]] Result<void> openState(Taking& now);
+    [[nodiscard]] Result<void> advanceTo(Taking& now, std::size_t state);
+    [[nodiscard]] Result<void> add(Taking& now, const Planned& planned, Frame&& frame);
     [[nodiscard]] Result<void> takePilots();
     [[nodiscard]] Result<void> learn(std::size_t state);
     [[nodiscard]] Result<void> settle();
     [[nodiscard]] proc::PlanInput input() const;
     [[nodiscard]] bool holdsDarks(const Window& window) const;
+    void beginPilots(std::size_t state);
+    void beginDark(Microseconds exposure);
     [[nodiscard]] Result<void> addDark(Microseconds exposure, const Frame& frame);
     [[nodiscard]] Result<void> takeDarks();
     [[nodiscard]] Result<Captured> takeStates();
@@ -57,10 +98,11 @@ private:
     const Responsivities responsivities_;
     const proc::SystematicFloor floor_;
     proc::RigModel rig_;
-    std::vector<std::vector<Frame>> pilots_;  ///< by state
-    std::vector<proc::StatePilot> learnt_;    ///< what they say
-    std::map<Microseconds, proc::DarkAverage> darkSums_;
-    std::map<Microseconds, int> darksTaken_;
+    std::vector<Pilots> pilots_;            ///< by state
+    std::vector<proc::StatePilot> learnt_;  ///< what they say
+    std::map<Microseconds, DarkSums> darkSums_;
+    /// Those of the exposure at hand, as they were before it.
+    std::optional<std::pair<Microseconds, DarkSums>> darksBefore_;
     proc::DarkLibrary darks_, freshDarks_;
     std::optional<proc::Binning> binning_;
     std::optional<proc::GlareFilter> glare_;

@@ -67,6 +67,7 @@ Result<RigProfile> readProfile(const fs::path& file) {
     profile.noise.fullScaleDn = keys.positive("sensor.full_scale_dn");
     profile.wedgeTolerance = Radians::fromDegrees(keys.positive("mirror.wedge_u_deg"));
     profile.ledDrift = keys.relative("led.drift_relative");
+    profile.warmUp = Seconds(keys.notNegativeOr("led.warm_up_s", profile.warmUp.count()));
     profile.exposureRatio = keys.relativeOr("uncertainty.exposure_ratio_relative", 0);
     profile.linearity = keys.relativeOr("uncertainty.linearity_relative", 0);
     profile.exposures = keys.wholeMicroseconds("bracket.exposures_us");

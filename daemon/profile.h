@@ -30,6 +30,7 @@ struct RigProfile {
     proc::Linearity response{};            ///< of the sensor; the identity unless it was measured
     Radians wedgeTolerance;                ///< of the mirror's wedges about either axis, k = 1
     double ledDrift = 0;                   ///< of the light between two captures, relative, k = 1
+    Seconds warmUp{2};                     ///< of an LED, after the rig was without power
     double exposureRatio = 0;              ///< of an effective exposure time, relative, k = 1
     double linearity = 0;                  ///< what is left of it, relative, k = 1
     std::vector<Microseconds> exposures;   ///< ascending

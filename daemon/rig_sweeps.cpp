@@ -74,7 +74,11 @@ Result<Sweep> takeSweep(const Bench& bench, Sequencer& sequencer, State state) {
     std::vector<KnownShot> shots;
     const auto list = [&](std::optional<State> of, int k) {
         const auto exposure = Microseconds(std::lround(longest * k / kExposures));
-        shots.push_back({.state = of, .shot = {.level = 1, .exposure = exposure}, .frames = kPair});
+        const bool joins = !shots.empty() && shots.back().state == of;
+        shots.push_back({.state = of,
+                         .shot = {.level = 1, .exposure = exposure},
+                         .frames = kPair,
+                         .joins = joins});
     };
     for (int k = 1; k <= kExposures; ++k) list({}, k);
     for (int k = 1; k <= kExposures; ++k) list(state, k);
@@ -89,7 +93,11 @@ Result<Sweep> takeSweep(const Bench& bench, Sequencer& sequencer, State state) {
          .done =
              [&](std::size_t shot) {
                  return bench.step(shots[shot].state ? "exposures" : "dark frames");
-             }});
+             },
+         .begin = [&](std::size_t shot) -> Result<void> {
+             (shots[shot].state ? sweep.lit : sweep.dark).clear();
+             return {};
+         }});
     if (!taken) return taken.error();
     return sweep;
 }
@@ -127,7 +135,7 @@ Result<SensorRecord> sensorOf(const std::vector<Frame>& lit,
 
 Result<SensorRecord> takeSensor(const Bench& bench) {
     if (Result<Window> window = evenPart(bench.rig); !window) return window.error();
-    Sequencer sequencer(bench.rig, bench.profile, bench.nextPlanStep, bench.alive);
+    Sequencer sequencer(bench.rig, bench.profile, bench.nextPlanStep, bench.attendance);
     const State state = middleState(bench.rig);
     const Result<Sweep> sweep = takeSweep(bench, sequencer, state);
     if (!sweep) return sweep.error();
@@ -174,7 +182,8 @@ Result<std::vector<proc::WarmUpPoint>> warmUp(const Bench& bench,
     const Microseconds exposure(std::lround(std::min(aim, static_cast<double>(kLongest.count()))));
     std::vector<KnownShot> shots;
     std::vector<bool> looked;  // of each shot: the others warm and cool
-    const auto list = [&](const KnownShot& shot, bool isLooked) {
+    const auto list = [&](KnownShot shot, bool isLooked) {
+        shot.joins = shot.state.has_value();  // each cycle begins in the dark
         shots.push_back(shot);
         looked.push_back(isLooked);
     };
@@ -206,14 +215,20 @@ Result<std::vector<proc::WarmUpPoint>> warmUp(const Bench& bench,
                                     points.push_back(meanOf(look, static_cast<double>(shot)));
                                 look.clear();
                                 return bench.step("warm-up in " + std::string(letter(state.band)));
-                            }});
+                            },
+                        .begin = [&](std::size_t shot) -> Result<void> {
+                            const auto first = static_cast<double>(shot);
+                            std::erase_if(points, [=](const auto& p) { return p.time >= first; });
+                            look.clear();
+                            return {};
+                        }});
     if (!taken) return taken.error();
     return points;
 }
 
 Result<proc::LedMonitor> takeWarmUp(const Bench& bench) {
     if (Result<Window> window = evenPart(bench.rig); !window) return window.error();
-    Sequencer sequencer(bench.rig, bench.profile, bench.nextPlanStep, bench.alive);
+    Sequencer sequencer(bench.rig, bench.profile, bench.nextPlanStep, bench.attendance);
     proc::LedMonitor monitor;
     for (const Band band : kBands) {
         const State state{middleState(bench.rig).led, band};

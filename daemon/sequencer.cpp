@@ -21,19 +21,16 @@ driver::CaptureRequest toTake(std::optional<State> state, const Shot& shot, int 
 
 }  // namespace
 
-std::string stateName(State state) {
-    return "LED " + std::to_string(state.led) + " " + std::string(letter(state.band));
-}
-
 Sequencer::Sequencer(driver::Rig& rig,
                      const RigProfile& profile,
                      std::uint64_t& nextPlanStep,
-                     std::function<void()> alive)
+                     Attendance attendance)
     : rig_(rig),
       profile_(profile),
       nextPlanStep_(nextPlanStep),
-      alive_(std::move(alive)),
-      leds_(static_cast<int>(rig.identify().ledAngles.size())) {}
+      attendance_(std::move(attendance)),
+      leds_(static_cast<int>(rig.identify().ledAngles.size())),
+      brackets_(rig, profile, nextPlanStep, attendance_) {}
 
 std::vector<State> Sequencer::states() const {
     std::vector<State> all;
@@ -68,24 +65,54 @@ driver::CaptureRequest Sequencer::prepare(State state, const BracketPlan& plan) 
 Result<driver::Capture> Sequencer::capture(const driver::CaptureRequest& request,
                                            const driver::ArmAhead& ahead,
                                            const driver::FrameSink& sink) {
-    alive_();
-    return rig_.capture(request, ahead, sink);
+    attendance_.alive();
+    Result<driver::Capture> taken = rig_.capture(request, ahead, sink);
+    if (taken && taken->recaptures > 0) brackets_.rejected(taken->evidence);
+    return taken;
+}
+
+/// Each attempt by the same plan steps.
+template <class Take>
+Result<void> Sequencer::whole(State state, Take take) {
+    const std::uint64_t step = nextPlanStep_;
+    const auto prepared = prepared_;
+    return brackets_.take(state, [&] {
+        nextPlanStep_ = step;
+        prepared_ = prepared;
+        return take();
+    });
 }
 
 Result<std::vector<Frame>> Sequencer::expose(State state,
                                              double level,
                                              Microseconds exposure,
                                              int frames) {
-    Result<driver::Capture> taken =
-        capture(numbered(toTake(state, {.level = level, .exposure = exposure}, frames)));
+    std::vector<Frame> all;
+    const Result<void> taken = whole(state, [&]() -> Result<void> {
+        Result<driver::Capture> one =
+            capture(numbered(toTake(state, {.level = level, .exposure = exposure}, frames)));
+        if (!one) return one.error();
+        for (const Frame& frame : one->frames)
+            if (Result<void> sound = brackets_.look(state, frame); !sound) return sound;
+        all = std::move(one->frames);
+        return {};
+    });
     if (!taken) return taken.error();
-    return std::move(taken->frames);
+    return all;
 }
 
 Result<void> Sequencer::bracket(State state,
                                 const BracketPlan& plan,
-                                const driver::FrameSink& sink,
+                                const BracketSink& sink,
                                 std::optional<State> then) {
+    return whole(state, [&] { return climb(state, plan, sink, then); });
+}
+
+Result<void> Sequencer::climb(State state,
+                              const BracketPlan& plan,
+                              const BracketSink& sink,
+                              std::optional<State> then) {
+    if (Result<void> begun = sink.begin(); !begun) return begun;
     BracketLadder ladder(profile_, plan);
     NextShot now = ladder.advance();
     driver::CaptureRequest wanted = begin(toTake(state, now.shot, plan.frames));
@@ -98,8 +125,10 @@ Result<void> Sequencer::bracket(State state,
         Result<driver::Capture> taken = capture(wanted, ahead);
         if (!taken) return taken.error();
         ladder.seen(taken->frames);
-        for (Frame& frame : taken->frames)
-            if (Result<void> given = sink(std::move(frame)); !given) return given;
+        for (Frame& frame : taken->frames) {
+            if (Result<void> sound = brackets_.look(state, frame); !sound) return sound;
+            if (Result<void> given = sink.frame(std::move(frame)); !given) return given;
+        }
         if (next.outlook == Outlook::Shot) {
             wanted = *ahead.next;
         } else if (next = ladder.advance(); next.outlook == Outlook::Shot) {
@@ -113,13 +142,34 @@ Result<void> Sequencer::bracket(State state,
 Result<void> Sequencer::take(std::span<const KnownShot> shots, const ShotSink& sink) {
     std::vector<driver::CaptureRequest> requests;
     requests.reserve(shots.size());
-    for (const KnownShot& known : shots)
-        requests.push_back(numbered(toTake(known.state, known.shot, known.frames)));
-    for (std::size_t i = 0; i < requests.size(); ++i) {
+    for (const KnownShot& known : shots) {
+        driver::CaptureRequest request = toTake(known.state, known.shot, known.frames);
+        if (known.planStep) request.planStep = *known.planStep;
+        requests.push_back(known.planStep ? request : numbered(request));
+    }
+    for (std::size_t first = 0; first < shots.size();) {
+        const Result<void> taken =
+            brackets_.take(shots[first].state, [&] { return shoot(shots, requests, sink, first); });
+        if (!taken) return taken;
+        do ++first;
+        while (first < shots.size() && shots[first].joins);
+    }
+    return {};
+}
+
+/// The bracket that the first of these shots opens.
+Result<void> Sequencer::shoot(std::span<const KnownShot> shots,
+                              std::span<const driver::CaptureRequest> requests,
+                              const ShotSink& sink,
+                              std::size_t first) {
+    if (Result<void> begun = sink.begin(first); !begun) return begun;
+    for (std::size_t i = first; i < shots.size() && (i == first || shots[i].joins); ++i) {
         driver::ArmAhead ahead;
         if (i + 1 < requests.size()) ahead.next = requests[i + 1];
-        const auto taken = capture(
-            requests[i], ahead, [&](Frame&& frame) { return sink.frame(i, std::move(frame)); });
+        const auto taken = capture(requests[i], ahead, [&](Frame&& frame) -> Result<void> {
+            if (Result<void> sound = brackets_.look(shots[i].state, frame); !sound) return sound;
+            return sink.frame(i, std::move(frame));
+        });
         if (!taken) return taken.error();
         if (Result<void> on = sink.done(i); !on) return on;
     }
@@ -139,8 +189,11 @@ Result<proc::DarkLibrary> Sequencer::darks(int frames, const std::function<Resul
                   Result<proc::DarkFrame> dark = average.mean();
                   if (!dark) return dark.error();
                   library.add(std::move(*dark));
-                  average = proc::DarkAverage(profile_.noise);
                   return done();
+              },
+              .begin = [&](std::size_t) -> Result<void> {
+                  average = proc::DarkAverage(profile_.noise);
+                  return {};
               }});
     if (!taken) return taken.error();
     return library;

@@ -4,6 +4,11 @@
 // where it is known or foreseen, so that exposures overlap transfers. Each capture has a plan step
 // of its own, so that no two share their noise, and the same placement always makes the same
 // captures. Frames are handed on as they arrive.
+//
+// A bracket is of one piece: nothing in it is mixed with what was taken before the rig booted
+// again or refused to light, and no frame that is not what was asked for is handed on. Then it is
+// taken again (whole_brackets.h), by the same plan steps, so that the frames are those of an
+// undisturbed run as far as the light is.
 
 #include <cstdint>
 #include <functional>
@@ -12,26 +17,30 @@
 #include <string>
 #include <vector>
 
+#include "daemon/attendance.h"
 #include "daemon/bracket_ladder.h"
 #include "daemon/profile.h"
+#include "daemon/state.h"
+#include "daemon/whole_brackets.h"
 #include "driver/rig.h"
 #include "proc/radiance/dark.h"
 
 namespace gonio::daemon {
-
-struct State {
-    int led = 0;
-    Band band = Band::R;
-};
-
-/// "LED 2 g".
-[[nodiscard]] std::string stateName(State state);
 
 /// A capture that is known before the one before it is seen.
 struct KnownShot {
     std::optional<State> state{};  ///< empty: dark
     Shot shot;
     int frames = 1;
+    bool joins = false;                       ///< the bracket of the shot before it
+    std::optional<std::uint64_t> planStep{};  ///< that it is taken by; empty: the next
+};
+
+/// What becomes of a bracket's frames.
+struct BracketSink {
+    driver::FrameSink frame;
+    /// Called before its first frame, and again when it is taken again: what came of it is void.
+    std::function<Result<void>()> begin = [] { return Result<void>(); };
 };
 
 /// What becomes of the frames of a list of shots, each named by its place in the list.
@@ -40,17 +49,21 @@ struct ShotSink {
     std::function<Result<void>(std::size_t shot, Frame&& frame)> frame;
     /// All frames of a shot are there. An error ends the list.
     std::function<Result<void>(std::size_t shot)> done = [](std::size_t) { return Result<void>(); };
+    /// A bracket begins with this shot; once more when it is taken again: what came of it is void.
+    std::function<Result<void>(std::size_t shot)> begin = [](std::size_t) {
+        return Result<void>();
+    };
 };
 
 class Sequencer {
 public:
     /// `rig` must be configured; it, the profile and the counter must outlive the sequencer.
-    /// `alive` is called before each capture.
-    Sequencer(
-        driver::Rig& rig,
-        const RigProfile& profile,
-        std::uint64_t& nextPlanStep,
-        std::function<void()> alive = [] {});
+    Sequencer(driver::Rig& rig,
+              const RigProfile& profile,
+              std::uint64_t& nextPlanStep,
+              Attendance attendance = {});
+    Sequencer(const Sequencer&) = delete;
+    Sequencer& operator=(const Sequencer&) = delete;
 
     /// LEDs x R, G, B, in this order.
     [[nodiscard]] std::vector<State> states() const;
@@ -58,7 +71,7 @@ public:
     /// and by the same plan, is armed ahead with the last of this one.
     [[nodiscard]] Result<void> bracket(State state,
                                        const BracketPlan& plan,
-                                       const driver::FrameSink& sink,
+                                       const BracketSink& sink,
                                        std::optional<State> then = {});
     /// One shot after the other.
     [[nodiscard]] Result<void> take(std::span<const KnownShot> shots, const ShotSink& sink);
@@ -72,7 +85,22 @@ public:
     [[nodiscard]] Result<proc::DarkLibrary> darks(int frames,
                                                   const std::function<Result<void>()>& done);
 
+    /// What frames are held against; `begin` of a sink may tell it more.
+    [[nodiscard]] FrameWatch& watch() { return brackets_.watch(); }
+    /// In the order in which they came.
+    [[nodiscard]] const std::vector<OddFrame>& oddFrames() const { return brackets_.oddFrames(); }
+
 private:
+    [[nodiscard]] Result<void> climb(State state,
+                                     const BracketPlan& plan,
+                                     const BracketSink& sink,
+                                     std::optional<State> then);
+    [[nodiscard]] Result<void> shoot(std::span<const KnownShot> shots,
+                                     std::span<const driver::CaptureRequest> requests,
+                                     const ShotSink& sink,
+                                     std::size_t first);
+    template <class Take>
+    [[nodiscard]] Result<void> whole(State state, Take take);
     [[nodiscard]] driver::CaptureRequest numbered(driver::CaptureRequest request);
     [[nodiscard]] driver::CaptureRequest begin(driver::CaptureRequest first);
     [[nodiscard]] driver::CaptureRequest prepare(State state, const BracketPlan& plan);
@@ -83,8 +111,9 @@ private:
     driver::Rig& rig_;
     const RigProfile& profile_;
     std::uint64_t& nextPlanStep_;
-    std::function<void()> alive_;
+    Attendance attendance_;
     int leds_;
+    WholeBrackets brackets_;
     std::optional<driver::CaptureRequest> prepared_;  ///< the next bracket's first
 };
 

@@ -31,7 +31,7 @@ std::vector<Microseconds> exposuresOf(const Bench& bench) {
 
 Result<std::vector<proc::DarkFrame>> takeDarks(const Bench& bench) {
     if (const Result<Window> window = configureWindow(bench.rig); !window) return window.error();
-    Sequencer sequencer(bench.rig, bench.profile, bench.nextPlanStep, bench.alive);
+    Sequencer sequencer(bench.rig, bench.profile, bench.nextPlanStep, bench.attendance);
     std::vector<KnownShot> shots;
     for (const Microseconds exposure : exposuresOf(bench))
         shots.push_back({.state = {}, .shot = {.exposure = exposure}, .frames = kFrames});
@@ -44,9 +44,12 @@ Result<std::vector<proc::DarkFrame>> takeDarks(const Bench& bench) {
              Result<proc::DarkFrame> mean = sums.mean();
              if (!mean) return mean.error();
              darks.push_back(std::move(*mean));
-             sums = proc::DarkAverage(bench.profile.noise);
              const double ms = static_cast<double>(shots[shot].shot.exposure.count()) * 1e-3;
              return bench.step("dark frames of " + shortest(ms) + " ms");
+         },
+         .begin = [&](std::size_t) -> Result<void> {
+             sums = proc::DarkAverage(bench.profile.noise);
+             return {};
          }});
     if (!taken) return taken.error();
     return darks;

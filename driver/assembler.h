@@ -30,8 +30,6 @@ public:
     void provide(std::size_t bytes, std::size_t frames) { memory_.provide(bytes, frames); }
     /// After FLUSH: older chunks are stale, and the jump to `nextStreamSequence` is no loss.
     void flushed(std::uint32_t nextStreamSequence);
-    /// After SET_INTERFACE, a halt or a re-claim: whatever comes next is in sequence.
-    void streamRestarted() { sequence_.reset(); }
 
     /// True when the transfer brought something new of the present capture.
     bool feed(std::span<const std::uint8_t> transfer);

@@ -36,7 +36,9 @@ Result<void> Collector::collect(const ArmedCapture& armed,
             if (auto done = exposed(); !done) return done;
             deadline_ = link_.clock().now() + wait;  // the chunks have come meanwhile, unread
         }
+        const Nanoseconds idle = link_.clock().now();
         if (auto heard = arrived(); !heard) return heard;
+        deadline_ += link_.clock().now() - idle;  // nothing was read meanwhile: nothing is late
         if (auto asked = repair(armed, progress); !asked) return asked;
         if (!progress.waits()) return {};
         const Nanoseconds left = std::max(Nanoseconds{0}, deadline_ - link_.clock().now());

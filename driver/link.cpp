@@ -14,10 +14,11 @@ constexpr int kSends = 3;                   // likewise
 constexpr Nanoseconds kPendingLimit = 10s;  // longer than any command of the page can take
 constexpr Nanoseconds kBusyLimit = 5s;      // a rig BUSY for longer will not become free
 constexpr Nanoseconds kBootLimit = 3s;
-constexpr Nanoseconds kStatusWait = 300ms;  // 3 periods of STATUS
-constexpr int kFlood = 1024;                // reports in one wait: more is not a rig talking
-constexpr std::size_t kEventsKept = 64;     // as many as the rig keeps
-constexpr std::size_t kEventsHeld = 1024;   // for a caller who does not take them
+// Reports that are silent are opened anew or lost by then (watched_transport.h): within 900 ms.
+constexpr Nanoseconds kStatusWait = 1200ms;
+constexpr int kFlood = 1024;               // reports in one wait: more is not a rig talking
+constexpr std::size_t kEventsKept = 64;    // as many as the rig keeps
+constexpr std::size_t kEventsHeld = 1024;  // for a caller who does not take them
 
 Error deviceError(const std::string& what, int status = 0) {
     return {ErrorKind::Device, what, status};
@@ -180,8 +181,10 @@ Result<Arguments> RigLink::command(Op op, const Arguments& arguments) {
         if (answer.status == status::kNotOwner) abandon(refused);
         return refused;
     }
-    return wire_.lose(deviceError(what() + ": no ACK after " + std::to_string(kSends) +
-                                  " sends; check its cable and power"),
+    const std::string silent = what() + ": no ACK after " + std::to_string(kSends) + " sends; ";
+    if (const auto why = wire_.suspect(deviceError(silent + "check its cable and power")))
+        return *why;
+    return wire_.lose(deviceError(silent + "it answers, but takes no commands"),
                       WatchedTransport::Port::Reset);
 }
 
@@ -270,6 +273,7 @@ void RigLink::follow(const Status& status) {
     }
     statusSequence_ = status.sequence;
     status_ = status;
+    if (std::exchange(eventsUnread_, false)) soughtEvent_ = 0;
 }
 
 /// Only the next one: what a lost report leaves out is re-read in takeEvents.
@@ -336,7 +340,7 @@ Result<Status> RigLink::freshStatus() {
     }
     if (!status_) {
         return deviceError("no STATUS from " + rigName(strings()) +
-                           " in 300 ms; check its cable and power");
+                           " in 1.2 s, though it sends other reports; update its firmware");
     }
     return *status_;
 }
@@ -349,12 +353,22 @@ bool RigLink::missesEvents() const {
     return status_ && status_->newestEvent > lastEvent_ && status_->newestEvent != soughtEvent_;
 }
 
+Result<EventsPage> RigLink::readEventsPage() {
+    if (auto set = wire_.setFeature(encodeEventsFrom(lastEvent_ + 1)); !set) return set.error();
+    return readFeature(wire_, ReportId::Events, decodeEventsPage);
+}
+
+/// A page that is damaged or refused is no loss: the next STATUS asks for it again.
 Result<void> RigLink::readEvents() {
     if (status_) soughtEvent_ = status_->newestEvent;
     for (std::size_t pages = 0; pages < kEventsKept; ++pages) {
-        if (auto set = wire_.setFeature(encodeEventsFrom(lastEvent_ + 1)); !set) return set;
-        const auto page = readFeature(wire_, ReportId::Events, decodeEventsPage);
-        if (!page) return page.error();
+        const auto page = readEventsPage();
+        if (!page) {
+            if (lost()) return page.error();
+            ++counters_.badReports;
+            eventsUnread_ = true;
+            return {};
+        }
         const std::uint32_t before = lastEvent_;
         for (const Event& event : page->events) {
             if (event.sequence <= lastEvent_) continue;

@@ -32,7 +32,7 @@ struct LinkOptions {
 
 /// Reports that came and were of no use, and commands that had to be repeated.
 struct LinkCounters {
-    std::uint32_t badReports = 0;      ///< wrong CRC
+    std::uint32_t badReports = 0;      ///< wrong CRC; EVENTS pages that were refused, too
     std::uint32_t unknownReports = 0;  ///< ids that are not in the table
     std::uint32_t foreignAcks = 0;     ///< of another session
     std::uint32_t strayAcks = 0;       ///< ours, but not of the command that waits
@@ -75,7 +75,8 @@ public:
     /// Its bytes are borrowed until the next call of readBulk.
     Result<std::optional<BulkBytes>> readBulk(Nanoseconds wait);
 
-    /// The next STATUS (10 Hz and on change); a Device error when none comes.
+    /// The next STATUS (10 Hz and on change), also from reports that had to be opened anew; a
+    /// Device error when none comes.
     Result<Status> freshStatus();
     /// The last one that came by the way.
     [[nodiscard]] const std::optional<Status>& status() const { return status_; }
@@ -96,6 +97,7 @@ private:
     Result<void> claim();
     Result<void> dropInputs();
     Result<void> readEvents();
+    Result<EventsPage> readEventsPage();
     [[nodiscard]] bool missesEvents() const;
     void follow(const Status& status);
     Result<SessionState> setSession(bool release);
@@ -121,6 +123,7 @@ private:
     std::deque<Event> events_;
     std::uint32_t lastEvent_ = 0;    ///< event_seq up to which all are taken or kept
     std::uint32_t soughtEvent_ = 0;  ///< the newest that STATUS promised when they were last read
+    bool eventsUnread_ = false;      ///< a page could not be read since the last STATUS
     LinkCounters counters_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -43,6 +44,7 @@ Result<Rig> Rig::open(Transport& transport, const LinkOptions& options) {
     auto link = RigLink::open(transport, options);
     if (!link) return link.error();
     Rig rig(std::move(*link));
+    rig.boot_ = rig.bootId();
     if (auto started = rig.start(); !started) return started.error();
     return rig;
 }
@@ -94,6 +96,7 @@ Result<void> Rig::configure(const Window& window, PixelFormat format) {
                           fits16(size.height) && window.binning <= 255;
     if (!wanted || !sendable) return usage(what + ": not a window of any sensor");
     geometry_.reset();
+    beginCall();
     const Geometry geometry{.window = window, .format = format, .frameBytes = *wanted};
     const auto set = surviving([&]() -> Result<void> {
         if (ahead_) {
@@ -127,6 +130,7 @@ Result<void> Rig::setFormat(const Geometry& geometry) {
 }
 
 Result<void> Rig::darken() {
+    beginCall();
     return surviving([&] { return putOut(); });
 }
 
@@ -140,6 +144,7 @@ Result<void> Rig::putOut() {
 }
 
 Result<void> Rig::keepAlive() {
+    beginCall();
     return surviving([&] { return link_->keepAlive(); });
 }
 
@@ -190,6 +195,7 @@ Result<Capture> Rig::capture(const CaptureRequest& request,
                              const ArmAhead& ahead,
                              const FrameSink& sink) {
     const std::string what = describe(request);
+    beginCall();
     const auto admitted = inOneBoot([&] { return admit(request, ahead); });
     if (!admitted) return admitted.error().in(what);
     const Anomalies before = anomalies();
@@ -206,7 +212,8 @@ Result<Capture> Rig::capture(const CaptureRequest& request,
                    .anomalies = anomalies().since(before),
                    .discarded = progress.discarded,
                    .resends = progress.resends,
-                   .recaptures = progress.recaptures};
+                   .recaptures = progress.recaptures,
+                   .evidence = progress.evidence()};
 }
 
 /// The error with its evidence.
@@ -247,8 +254,11 @@ Result<void> Rig::attempt(const Making& making) {
         inOneBoot([&] { return takeUpOrArm(making.request, making.progress.toArm()); });
     if (!armed) return armed.error();
     bool again = false;
-    return inOneBoot([&] {
-        return std::exchange(again, true) ? collectAgain(*armed, making) : collect(*armed, making);
+    return inOneBoot([&]() -> Result<void> {
+        if (std::exchange(again, true)) {
+            if (auto asked = askForHeld(*armed, progress); !asked) return asked;
+        }
+        return collect(*armed, making);
     });
 }
 
@@ -259,10 +269,24 @@ Result<void> Rig::collect(const ArmedCapture& armed, const Making& making) {
         if (!haveMemoryFor(making.request.frames, making.ahead.next->frames)) return {};
         return armAhead(*making.ahead.next);
     };
+    // A sink may keep the rig alive, which may be lost and come back in it.
+    bool cameBack = false;
     const auto arrived = [&]() -> Result<void> {
-        return making.sink ? making.progress.deliver(making.sink, pixels_) : Result<void>();
+        if (!making.sink) return {};
+        const int before = comebacks_;
+        auto given = making.progress.deliver(making.sink, pixels_);
+        cameBack = given && comebacks_ != before;
+        return cameBack ? Error{ErrorKind::Interrupted, "the rig came back"} : given;
     };
-    return Collector(*link_, assembler_, pixels_).collect(armed, making.progress, exposed, arrived);
+    Collector collector(*link_, assembler_, pixels_);
+    while (true) {
+        cameBack = false;
+        const auto done =  // by reference: a function of its own would allocate amid frames
+            collector.collect(armed, making.progress, exposed, std::ref(arrived));
+        if (!cameBack) return done;
+        if (rebooted_ && !link_->lost()) return *std::exchange(rebooted_, std::nullopt);
+        if (auto asked = askForHeld(armed, making.progress); !asked) return asked;
+    }
 }
 
 /// What was armed ahead is this request, or admit() would have aborted it; a later attempt finds

@@ -15,12 +15,14 @@
 // commands. Frames of the two are told apart by capture_id, and each keeps its repairs.
 //
 // A rig that is lost comes back when onLost() has said how (comeback.h), in capture(), configure(),
-// darken() and keepAlive(); else, and when its owner gives up, the call fails and the rig stays
-// lost until the next such call. Of the same boot: frames that the rig still holds are sent again,
-// the others are exposed again, which is no recapture; what was armed ahead is forgotten. Of
-// another boot (it lost its power): the format is set again, and capture() is a Device error that
-// says so, once, the one that was interrupted or the next: what belongs to one bracket must be
-// taken again. configure() begins anew. Another serial number is never taken back.
+// darken() and keepAlive(); else, when its owner gives up, and after twenty times in one call, the
+// call fails and the rig stays lost until the next such call. So it does at once when its stream
+// has failed three times in ten seconds: the rig is there, and would fail again. Of the same boot:
+// frames that the rig still holds are sent again, the others are exposed again, which is no
+// recapture; what was armed ahead is forgotten. Of another boot (it lost its power): the format is
+// set again, and capture() is a Device error that says so, once, the one that was interrupted or
+// the next: what belongs to one bracket must be taken again. configure() begins anew. Another
+// serial number is never taken back.
 
 #include <cstdint>
 #include <memory>
@@ -75,9 +77,10 @@ struct ArmAhead {
 struct Capture {
     std::vector<Frame> frames;
     Anomalies anomalies;
-    int discarded = 0;   ///< frames from before the settings took effect
-    int resends = 0;     ///< RESEND commands
-    int recaptures = 0;  ///< captures taken again after RESEND was not enough
+    int discarded = 0;       ///< frames from before the settings took effect
+    int resends = 0;         ///< RESEND commands
+    int recaptures = 0;      ///< captures taken again after RESEND was not enough
+    std::string evidence{};  ///< what was wrong with the first frames that were taken again
 
     [[nodiscard]] std::size_t size() const { return frames.size(); }
     [[nodiscard]] const Frame& front() const { return frames.front(); }
@@ -155,13 +158,15 @@ private:
     };
     Result<void> fill(const Making& making);
     Result<void> collect(const ArmedCapture& armed, const Making& making);
-    Result<void> collectAgain(const ArmedCapture& armed, const Making& making);
+    Result<void> askForHeld(const ArmedCapture& armed, CaptureProgress& progress);
     // Of a rig that was lost (rig_comeback.cpp).
     template <class Work>
     auto surviving(Work work) -> decltype(work());
     template <class Work>
     auto inOneBoot(Work work) -> decltype(work());
+    void beginCall();
     Result<void> comeBack(const Error& lost);
+    [[nodiscard]] Error lostTooOften(const Error& lost) const;
     Result<void> takeUp(Transport& transport);
     Result<void> attempt(const Making& making);
     Result<ArmedCapture> takeUpOrArm(const CaptureRequest& request, int frames);
@@ -191,7 +196,11 @@ private:
     std::optional<OnItsWay> ahead_;
     CaptureIds ids_;
     Comeback onLost_;
+    std::uint32_t boot_ = 0;         ///< of the claim that was taken up last
     std::optional<Error> rebooted_;  ///< not told yet
+    bool faultTold_ = false;         ///< the fault of the stream that the rig is lost by
+    int comebacks_ = 0;              ///< ever
+    int mostComebacks_ = 0;          ///< of those, in this call
     std::vector<Interruption> interruptions_;
 };
 
@@ -205,9 +214,10 @@ auto Rig::surviving(Work work) -> decltype(work()) {
     }
 }
 
-/// As above, and another boot is an error.
+/// As above, and another boot is an error: first of all, before a loss is mended.
 template <class Work>
 auto Rig::inOneBoot(Work work) -> decltype(work()) {
+    if (auto told = std::exchange(rebooted_, std::nullopt)) return *told;
     return surviving([&]() -> decltype(work()) {
         if (auto told = std::exchange(rebooted_, std::nullopt)) return *told;
         return work();

@@ -11,12 +11,17 @@ namespace {
 // would never end.
 constexpr int kMostTries = 1000;
 
+// In one call: a rig that comes back and is lost again each time, at the same point, would never
+// end either.
+constexpr int kMostComebacks = 20;
+
 }  // namespace
 
 Result<void> Rig::comeBack(const Error& lost) {
-    // A stream that fails again and again is a fault: the rig is there, and would fail again.
-    if (lost.deviceStatus == status::kLink) return lost;
-    const std::uint32_t boot = bootId();
+    // A fault of the stream ends the call; the next one may try.
+    if (lost.deviceStatus == status::kLink && !std::exchange(faultTold_, true)) return lost;
+    if (comebacks_ >= mostComebacks_) return lostTooOften(lost);
+    const std::uint32_t boot = boot_;  // another one may have been seen since, and lost again
     const Clock& clock = link_->clock();
     Interruption gap{.cause = lost.message, .at = clock.now()};
     Error why = lost;
@@ -36,6 +41,9 @@ Result<void> Rig::comeBack(const Error& lost) {
                                   std::to_string(bootId()) + ", was " + std::to_string(boot) +
                                   "; redo the bracket"};
         }
+        boot_ = bootId();
+        faultTold_ = false;
+        ++comebacks_;
         interruptions_.push_back(std::move(gap));
         return {};
     }
@@ -50,16 +58,24 @@ Result<void> Rig::takeUp(Transport& transport) {
     return geometry_ ? setFormat(*geometry_) : Result<void>();
 }
 
+Error Rig::lostTooOften(const Error& lost) const {
+    return {lost.kind,
+            "lost " + std::to_string(kMostComebacks + 1) +
+                " times in one call, at last: " + lost.message,
+            lost.deviceStatus};
+}
+
+void Rig::beginCall() { mostComebacks_ = comebacks_ + kMostComebacks; }
+
 /// Of the frames still missing, those that the rig holds.
-Result<void> Rig::collectAgain(const ArmedCapture& armed, const Making& making) {
-    Interruption& gap = interruptions_.back();
-    CaptureProgress& progress = making.progress;
+Result<void> Rig::askForHeld(const ArmedCapture& armed, CaptureProgress& progress) {
     progress.interrupt();
     const auto held = Collector(*link_, assembler_, pixels_).askForAll(armed, progress);
     if (!held) return held.error();
-    gap.resent += held->held;
-    gap.redone += held->gone;
-    return collect(armed, making);
+    if (interruptions_.empty()) return {};  // a sink has taken them
+    interruptions_.back().resent += held->held;
+    interruptions_.back().redone += held->gone;
+    return {};
 }
 
 std::vector<Interruption> Rig::takeInterruptions() { return std::exchange(interruptions_, {}); }

@@ -55,8 +55,8 @@ WatchedTransport::Probe WatchedTransport::probe() {
     return {.answers = true, .bootId = ident->bootId};
 }
 
-/// The loss that `seen` and a probe show; empty: the rig is there.
-std::optional<Error> WatchedTransport::decided(const Error& seen) {
+std::optional<Error> WatchedTransport::suspect(const Error& seen) {
+    if (lost_) return lost_;
     const Probe probed = probe();
     if (!probed.answers) return lose(seen, Port::Reset);
     if (!probed.bootId || probed.bootId == bootId_) return std::nullopt;
@@ -77,13 +77,13 @@ auto WatchedTransport::watched(Call call) -> decltype(call()) {
     auto done = call();
     if (done || !bootId_) return done;
     const Error seen = done.error();
-    return decided(seen).value_or(seen);
+    return suspect(seen).value_or(seen);
 }
 
 /// A rig that answers while its reports stay away: they are opened anew.
 Result<void> WatchedTransport::reviveReports() {
     const std::string rig = rigName(target_->strings());
-    if (const auto why = decided(
+    if (const auto why = suspect(
             {ErrorKind::Device, rig + ": no reports for 300 ms; check its cable and power"}))
         return *why;
     if (silences_ == kReopens) {
@@ -102,7 +102,7 @@ Result<std::optional<Report>> WatchedTransport::readInput(Nanoseconds wait) {
     const Nanoseconds deadline = now() + wait;
     while (true) {
         const Nanoseconds untilSilence = bootId_ ? heard_ + kSilence - now() : wait;
-        const Nanoseconds step = std::clamp(untilSilence, Nanoseconds{0}, deadline - now());
+        const Nanoseconds step = std::max(Nanoseconds{0}, std::min(untilSilence, deadline - now()));
         auto report = watched([&] { return target_->readInput(step); });
         if (!report || !bootId_) return report;
         if (*report) {

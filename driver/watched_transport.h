@@ -25,6 +25,9 @@ public:
         Reset,  ///< the rig hangs
         Leave
     };
+    /// The link is suspect, as `seen` shows: a probe decides. Why the rig is lost; empty: it is
+    /// there.
+    std::optional<Error> suspect(const Error& seen);
     /// Lost, for a reason that the caller knows.
     Error lose(const Error& why, Port port);
     /// Lost: a STATUS shows another boot.
@@ -55,7 +58,6 @@ private:
         std::optional<std::uint32_t> bootId{};
     };
     [[nodiscard]] Probe probe();
-    [[nodiscard]] std::optional<Error> decided(const Error& seen);
     Result<void> reviveReports();
 
     Transport* target_;  ///< null: lost

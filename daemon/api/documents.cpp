@@ -33,6 +33,7 @@ Json runningJob(const JobStatus& job) {
     json["wanted"] = job.question ? Json(job.question->wanted) : Json(nullptr);
     json["elapsed_s"] = job.elapsed.count();
     json["left_s"] = job.left ? Json(job.left->count()) : Json(nullptr);
+    json["interruptions"] = job.interruptions;
     return json;
 }
 

@@ -94,13 +94,12 @@ Result<void> serve(const DaemonOptions& options) {
     if (port && !options.record.empty()) port = recorded(std::move(*port), options.record);
     if (!port) return port.error();
     const driver::SteadyClock clock;
-    Result<std::unique_ptr<Engine>> engine =
-        Engine::open(store,
-                     **port,
-                     std::move(*profile),
-                     {.clock = clock, .utcNow = utcNow, .randomId = randomClaim, .alive = [] {
+    EngineWorld world{.clock = clock, .utcNow = utcNow, .randomId = randomClaim, .alive = [] {
                           sd_notify(0, "WATCHDOG=1");
-                      }});
+                      }};
+    if (options.comebackSeconds) world.patience = Seconds(*options.comebackSeconds);
+    Result<std::unique_ptr<Engine>> engine =
+        Engine::open(store, **port, std::move(*profile), std::move(world));
     if (!engine) return engine.error();
     auto server = HttpServer::open(socket, **engine, *access);
     if (!server) return server.error();
@@ -129,6 +128,11 @@ struct Arguments {
         app.add_option("--socket", options.socket, "where to serve; goniod.sock in the store");
         app.add_option("--socket-mode", options.socketMode, "0600, or 0660 for the group too");
         app.add_option("--profile", options.profile, "rig profile (TOML)");
+        app.add_option("--comeback-seconds",
+                       options.comebackSeconds,
+                       "how long a job waits for a rig that was unplugged, or must not light; 600; "
+                       "0: it ends at once")
+            ->check(CLI::NonNegativeNumber);
         app.add_option("--record", options.record, "record all traffic with the rig in this file");
         app.add_option("--config", config, "goniod.toml, for what the options above do not say");
         app.add_flag("-v,--verbose", verbose, "say on stderr what is done");

@@ -19,6 +19,9 @@ Result<DaemonOptions> readDaemonOptions(const std::filesystem::path& file) {
                           .profile = keys.textOr("profile", ""),
                           .record = keys.textOr("record", ""),
                           .socketMode = keys.textOr("socket_mode", "")};
+    constexpr double kNotTold = -1;
+    const double comeback = keys.notNegativeOr("comeback_seconds", kNotTold);
+    if (comeback >= 0) options.comebackSeconds = comeback;
     keys.nothingElse();
     if (keys.error()) return *keys.error();
     return options;
@@ -31,6 +34,7 @@ DaemonOptions overlaid(DaemonOptions first, const DaemonOptions& second) {
     if (first.profile.empty()) first.profile = second.profile;
     if (first.record.empty()) first.record = second.record;
     if (first.socketMode.empty()) first.socketMode = second.socketMode;
+    if (!first.comebackSeconds) first.comebackSeconds = second.comebackSeconds;
     return first;
 }
 

@@ -42,7 +42,7 @@ bool FollowedJob::take(const StreamEvent& event) {
 }
 
 void FollowedJob::heed(const StreamEvent& event, const Json& data) {
-    if (event.type == "rig" && data.at("state") == "finishing") progress_.show("computing");
+    if (event.type == "rig") heedRig(data);
     if (data.value("job", std::int64_t{0}) != id_) return;
     if (event.type == "progress") {
         progress_.show({.step = data.at("step"),
@@ -57,6 +57,17 @@ void FollowedJob::heed(const StreamEvent& event, const Json& data) {
             error_ = Error{problemKind(data.at("problem").get<std::string>()), data.at("message")};
         }
     }
+}
+
+/// Of what a person has to do something about, also where no progress is shown.
+void FollowedJob::heedRig(const Json& data) {
+    const std::string state = data.at("state");
+    if (state == "finishing") progress_.show("computing");
+    if (state == "running" && waits_) std::cerr << "the job goes on\n";
+    waits_ = state == "suspended" || state == "interrupted";
+    if (!waits_) return;
+    progress_.clear();
+    std::cerr << "waiting for the rig: " << data.value("detail", std::string()) << "\n";
 }
 
 void FollowedJob::heed(Question question) {

@@ -33,6 +33,7 @@ private:
     bool take(const StreamEvent& event);
     void heed(const StreamEvent& event, const nlohmann::ordered_json& data);
     void heed(Question question);
+    void heedRig(const nlohmann::ordered_json& data);
     Result<void> lookUp();
     void cancelWhenInterrupted();
     [[nodiscard]] std::string cancel();
@@ -47,6 +48,7 @@ private:
     Progress progress_;
     std::int64_t id_ = 0;
     std::uint64_t seen_ = 0;            ///< newest event
+    bool waits_ = false;                ///< for its rig
     std::uint64_t answered_ = 0;        ///< newest question
     std::optional<Question> question_;  ///< that waits for an answer
     bool ended_ = false;

@@ -26,6 +26,8 @@
 
 namespace gonio::daemon {
 
+inline constexpr Nanoseconds kRescanning = std::chrono::milliseconds(500);  // PROTOCOL.md 4
+
 /// What a person has to do before a job goes on.
 struct Question {
     std::uint64_t number = 0;  ///< of the event that asks it
@@ -40,6 +42,7 @@ struct JobStatus {
     std::optional<Question> question{};
     Seconds elapsed{0};
     std::optional<Seconds> left{};  ///< by the steps that are done
+    int interruptions = 0;          ///< survived so far
 };
 
 struct CalibrationDate {
@@ -67,6 +70,8 @@ struct EngineWorld {
     std::function<std::uint64_t()> randomId;  ///< of a claim
     /// Called by a sound owner at each step of a job, and several times a second otherwise.
     std::function<void()> alive;
+    /// How long a job waits for a rig that was lost, or that must not light; 0: it ends at once.
+    Seconds patience = std::chrono::minutes(10);
 };
 
 class Engine {
@@ -142,6 +147,12 @@ private:
     void lost(const Error& why);
     void disconnect();
     void hinder(const std::optional<Error>& obstacle);
+    // A job that goes on (engine_recovery.cpp).
+    [[nodiscard]] Result<driver::Transport*> comeBack(const Error& lost);
+    [[nodiscard]] Result<driver::Transport*> lookAgain();
+    [[nodiscard]] Result<void> awaitLight(const Error& why);
+    [[nodiscard]] Result<bool> mayLight();
+    void pause();
     [[nodiscard]] Error noRig() const;
     void runPending(const std::stop_token& stop);
     [[nodiscard]] Result<std::string> runOn(const JobRequest& request, Monitor& monitor);
@@ -175,6 +186,7 @@ private:
     std::optional<Pending> pending_;
     Nanoseconds nextTry_{0};
     std::optional<Error> obstacle_;  ///< why there is no rig, or none that may be lit
+    Monitor* monitor_ = nullptr;     ///< of the job that is on the rig
 
     mutable std::mutex mutex_;  ///< of what is below
     std::condition_variable asked_;

@@ -1,6 +1,7 @@
 // The engine's rig: looked for, claimed, tended, lost and found again.
 
 #include "daemon/engine/engine.h"
+#include "daemon/engine/fault_text.h"
 #include "proc/core/log.h"
 #include "proc/core/number_text.h"
 
@@ -9,19 +10,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Nanoseconds kRescan = 500ms;  // PROTOCOL.md 4
 constexpr Nanoseconds kRetryHeld = 2s;  // held by another, or no permission
-
-/// A latched fault, and what a person does about it.
-std::string explained(std::uint16_t fault) {
-    const std::string name = driver::statusName(fault);
-    switch (fault) {
-        case driver::status::kInterlock:
-            return name + ": the aperture left the sample, or the hood is open; seat it again";
-        case driver::status::kOverTemp: return name + ": too warm to light; let it cool";
-        default: return name + ": if it stays, unplug the rig and plug it in again";
-    }
-}
 
 }  // namespace
 
@@ -32,7 +21,7 @@ void Engine::connect() {
     const Error& why = claimed.error();
     disconnect();
     advance(EngineEvent::Lost, why.message);
-    nextTry_ = world_.clock.now() + (why.kind == ErrorKind::Busy ? kRetryHeld : kRescan);
+    nextTry_ = world_.clock.now() + (why.kind == ErrorKind::Busy ? kRetryHeld : kRescanning);
     hinder(why);
 }
 
@@ -76,6 +65,7 @@ Result<void> Engine::claim() {
     auto rig = driver::Rig::open(**transport, port_.session().value_or(id));
     if (!rig) return rig.error();
     rig_.emplace(std::move(*rig));
+    rig_->onLost([this](const Error& lost) { return comeBack(lost); });
     hinder({});
     publishCalibrations();
     advance(EngineEvent::Claimed);
@@ -93,7 +83,7 @@ void Engine::lost(const Error& why) {
     disconnect();
     advance(EngineEvent::Lost, why.message);
     hinder(why);
-    nextTry_ = world_.clock.now() + kRescan;
+    nextTry_ = world_.clock.now() + kRescanning;
 }
 
 /// Feeds the heartbeat, and follows what the rig says of itself.

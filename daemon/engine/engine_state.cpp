@@ -16,26 +16,21 @@ struct Row {
 };
 
 constexpr std::array kTable{
-    Row{Offline, Appeared, Connecting},
-    Row{Connecting, Claimed, Idle},
-    Row{Connecting, Lost, Offline},
-    Row{Idle, JobBegun, Running},
-    Row{Idle, Lost, Offline},
-    Row{Idle, FaultSeen, Fault},
-    Row{Running, Captured, Finishing},
-    Row{Running, JobEnded, Idle},
-    Row{Running, Lost, Interrupted},
-    Row{Running, FaultSeen, Fault},
-    Row{Finishing, JobEnded, Idle},
-    Row{Finishing, Lost, Offline},
-    Row{Finishing, FaultSeen, Fault},
-    Row{Interrupted, Appeared, Connecting},
-    Row{Fault, FaultCleared, Idle},
+    Row{Offline, Appeared, Connecting}, Row{Connecting, Claimed, Idle},
+    Row{Connecting, Lost, Offline},     Row{Idle, JobBegun, Running},
+    Row{Idle, Lost, Offline},           Row{Idle, FaultSeen, Fault},
+    Row{Running, Captured, Finishing},  Row{Running, JobEnded, Idle},
+    Row{Running, Lost, Interrupted},    Row{Running, FaultSeen, Fault},
+    Row{Running, Hindered, Suspended},  Row{Finishing, JobEnded, Idle},
+    Row{Finishing, Lost, Offline},      Row{Finishing, FaultSeen, Fault},
+    Row{Suspended, Resumed, Running},   Row{Suspended, JobEnded, Idle},
+    Row{Suspended, Lost, Interrupted},  Row{Interrupted, Appeared, Connecting},
+    Row{Interrupted, Resumed, Running}, Row{Fault, FaultCleared, Idle},
     Row{Fault, Lost, Offline},
 };
 
-constexpr std::array<std::string_view, 7> kNames{
-    "offline", "connecting", "idle", "running", "finishing", "interrupted", "fault"};
+constexpr std::array<std::string_view, 8> kNames{
+    "offline", "connecting", "idle", "running", "finishing", "suspended", "interrupted", "fault"};
 
 }  // namespace
 

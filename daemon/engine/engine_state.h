@@ -13,6 +13,7 @@ enum class EngineState {
     Idle,         ///< ready, dark
     Running,      ///< a job takes frames
     Finishing,    ///< a job has its frames and computes
+    Suspended,    ///< the rig does not light in the middle of a job; it waits for a person
     Interrupted,  ///< the rig was lost in the middle of a job; it is looked for
     Fault         ///< the rig refuses to light until the cause is gone
 };
@@ -24,6 +25,8 @@ enum class EngineEvent {
     JobBegun,
     Captured,
     JobEnded,
+    Hindered,  ///< a job's light is off until the interlock is closed, or the rig is cooler
+    Resumed,   ///< the job goes on
     FaultSeen,
     FaultCleared
 };

@@ -6,7 +6,9 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "daemon/attendance.h"
 #include "daemon/capture_goal.h"
 #include "daemon/engine/rig_port.h"
 #include "daemon/profile.h"
@@ -75,6 +77,11 @@ public:
     virtual void captured() = 0;
     /// It goes on: every few seconds at least, between two steps.
     virtual void alive() = 0;
+    /// The rig does not light; returns once it may again. An error ends the job.
+    virtual Result<void> suspended(const Error& why) = 0;
+    virtual void setback(const Setback& setback) = 0;
+    /// What has interrupted the job so far, and was survived.
+    [[nodiscard]] virtual const std::vector<driver::Interruption>& interruptions() = 0;
 };
 
 /// What a job works with; all borrowed.

@@ -1,5 +1,6 @@
 #include "daemon/engine/job_run.h"
 
+#include "daemon/engine/interruption_text.h"
 #include "daemon/sample_quality.h"
 #include "proc/core/number_text.h"
 #include "proc/formats/file_degrees.h"
@@ -22,7 +23,10 @@ Bench JobRun::measuring(const RigProfile& profile) const {
             .nextPlanStep = bench_.nextPlanStep,
             .clock = bench_.computer,
             .step = [this](const std::string& what) { return bench_.monitor.step(what); },
-            .alive = [this] { bench_.monitor.alive(); },
+            .attendance = {.alive = [this] { bench_.monitor.alive(); },
+                           .suspended =
+                               [this](const Error& why) { return bench_.monitor.suspended(why); },
+                           .setback = [this](const Setback& one) { bench_.monitor.setback(one); }},
             .outlook = [this](const proc::Progress& now) { bench_.monitor.outlook(now); }};
 }
 
@@ -44,6 +48,9 @@ void JobRun::finish(proc::SampleInfo& info, const Captured& captured) const {
     info.rigSeconds = onRig_.elapsed().count();
     info.computeSeconds = captured.compute.count();
     info.extra["chi_square_per_freedom"] = shortest(captured.chiSquarePerFreedom);
+    const auto& interruptions = bench_.monitor.interruptions();
+    info.interruptions = static_cast<int>(interruptions.size());
+    if (!interruptions.empty()) info.extra["interrupted_by"] = described(interruptions);
     const std::string steps = described(captured.lightSteps);
     info.extra["light"] = steps.empty() ? "steady within each bracket" : steps;
 }

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "daemon/engine/interruption_text.h"
 #include "daemon/engine/reference_jobs.h"
 #include "daemon/engine/rig_jobs.h"
 #include "daemon/engine/sample_jobs.h"
@@ -34,8 +35,10 @@ Result<Json> documentOf(const JobRun& run, JobKind kind) {
 
 Result<std::string> runJob(const JobBench& bench, const JobRequest& request) {
     const JobRun run(bench, request);
-    const Result<Json> document = documentOf(run, request.kind);
+    Result<Json> document = documentOf(run, request.kind);
     if (!document) return document.error();
+    for (const driver::Interruption& one : bench.monitor.interruptions())
+        (*document)["interruptions"].push_back(toJson(one));
     return document->dump(2, ' ', false, Json::error_handler_t::replace);
 }
 

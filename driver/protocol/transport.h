@@ -28,8 +28,8 @@ struct DeviceStrings {
     std::string protocol;  ///< string descriptor 240, e.g. "GRP/1.0"
 };
 
-/// Of one bulk transfer: one chunk, or whatever came. Borrowed until the next call of readBulk or
-/// resetStream, and no longer than the transport lives.
+/// Of one bulk transfer: one chunk, or whatever came. Borrowed until the next call of readBulk,
+/// resetStream or resetPort, and no longer than the transport lives.
 using BulkBytes = std::span<const std::uint8_t>;
 
 class Transport {

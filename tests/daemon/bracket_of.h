@@ -12,14 +12,17 @@ inline Result<std::vector<Frame>> bracketOf(Sequencer& sequencer,
                                             const BracketPlan& plan,
                                             std::optional<State> then = {}) {
     std::vector<Frame> frames;
-    const Result<void> taken = sequencer.bracket(
-        state,
-        plan,
-        [&](Frame frame) -> Result<void> {
-            frames.push_back(std::move(frame));
-            return {};
-        },
-        then);
+    const Result<void> taken = sequencer.bracket(state,
+                                                 plan,
+                                                 {.frame = [&](Frame frame) -> Result<void> {
+                                                      frames.push_back(std::move(frame));
+                                                      return {};
+                                                  },
+                                                  .begin = [&]() -> Result<void> {
+                                                      frames.clear();
+                                                      return {};
+                                                  }},
+                                                 then);
     if (!taken) return taken.error();
     return frames;
 }

@@ -38,37 +38,59 @@ protected:
 };
 
 TEST_F(FrameWatchTest, GoodFramesAreNotOdd) {
-    FrameWatch watch(darks, noise, white);
-    for (int i = 0; i < 5; ++i) watch.see(kState, take(kLit));
-    EXPECT_TRUE(watch.odd().empty());
-    EXPECT_EQ(framesVerdict(watch.odd()).grade, proc::Grade::Ok);
+    FrameWatch watch(noise);
+    watch.expect(darks, white);
+    watch.begin();
+    for (int i = 0; i < 5; ++i) EXPECT_FALSE(watch.see(kState, take(kLit)));
+    EXPECT_EQ(framesVerdict({}).grade, proc::Grade::Ok);
 }
 
-TEST_F(FrameWatchTest, ARepeatedPictureIsRefusedByItsNumber) {
-    FrameWatch watch(darks, noise, white);
+TEST_F(FrameWatchTest, ARepeatedPictureIsOddAlsoInAnotherBracket) {
+    FrameWatch watch(noise);
+    watch.begin();
     Frame frame = take(kLit);
-    watch.see(kState, frame);
+    ASSERT_FALSE(watch.see(kState, frame));
     frame.number = 777;
     frame.index = 1;
-    watch.see(kState, frame);
-    ASSERT_EQ(watch.odd().size(), 1U);
-    const proc::Verdict verdict = framesVerdict(watch.odd());
-    EXPECT_EQ(verdict.grade, proc::Grade::Refused);
-    EXPECT_NE(verdict.evidence.find("777 (LED 1 g)"), std::string::npos) << verdict.evidence;
+    const auto odd = watch.see(kState, frame);
+    ASSERT_TRUE(odd);
+    EXPECT_EQ(odd->kind, Setback::Cause::Repeated);
+    watch.begin();
+    EXPECT_TRUE(watch.see(std::nullopt, frame));
+    const std::vector<OddFrame> all{*odd};
+    const proc::Verdict verdict = framesVerdict(all);
+    EXPECT_EQ(verdict.grade, proc::Grade::Warned);
+    EXPECT_NE(verdict.evidence.find("LED 1 g: frame 777 is bit for bit"), std::string::npos)
+        << verdict.evidence;
     EXPECT_FALSE(verdict.next.empty());
 }
 
-TEST_F(FrameWatchTest, ALitFrameWithoutLightIsWarnedOfWhereWhiteTells) {
-    FrameWatch watch(darks, noise, white);
-    watch.see(kState, take(kNoLight));
-    ASSERT_EQ(watch.odd().size(), 1U);
-    EXPECT_EQ(framesVerdict(watch.odd()).grade, proc::Grade::Warned);
-    FrameWatch without(darks, noise, {});
-    without.see(kState, take(kNoLight));
-    EXPECT_TRUE(without.odd().empty()) << "nothing is known of the light";
-    FrameWatch dim(darks, noise, {{300, 300, 300}, {300, 300, 300}});
-    dim.see(kState, take(kNoLight));
-    EXPECT_TRUE(dim.odd().empty()) << "so little light is lost in the noise";
+TEST_F(FrameWatchTest, ALitFrameWithoutLightIsOddWhereWhiteTells) {
+    FrameWatch watch(noise);
+    watch.expect(darks, white);
+    watch.begin();
+    const auto odd = watch.see(kState, take(kNoLight));
+    ASSERT_TRUE(odd);
+    EXPECT_EQ(odd->kind, Setback::Cause::Unlit);
+    FrameWatch without(noise);
+    EXPECT_FALSE(without.see(kState, take(kNoLight))) << "nothing is known of the light";
+    FrameWatch dim(noise);
+    dim.expect(darks, {{300, 300, 300}, {300, 300, 300}});
+    EXPECT_FALSE(dim.see(kState, take(kNoLight))) << "so little light is lost in the noise";
+}
+
+TEST_F(FrameWatchTest, TheFirstFrameIsHeldAgainstAnEarlierOneOfItsBracket) {
+    FrameWatch watch(noise);
+    const Frame pilot = take({.electronsPerSecond = 1e6, .seconds = 5e-4});
+    Frame unlike = take({.electronsPerSecond = 4e6, .seconds = 1e-3});
+    watch.begin(&pilot);
+    const auto odd = watch.see(kState, unlike);
+    ASSERT_TRUE(odd);
+    EXPECT_EQ(odd->kind, Setback::Cause::Exposure);
+    watch.begin();
+    EXPECT_FALSE(watch.see(kState, unlike)) << "it may be another bracket's light";
+    watch.begin(&pilot);
+    EXPECT_FALSE(watch.see(kState, take(kLit)));
 }
 
 TEST(WhiteRates, SpreadTheFieldsLightOverTheWindow) {

@@ -78,10 +78,11 @@ Lab::Frames Lab::frames(const std::string& what, const BracketPlan& plan) {
     for (const State state : sequencer.states()) {
         Bracket& bracket = frames.brackets.emplace_back();
         bracket.state = state;
-        const auto taken = sequencer.bracket(state, plan, [&](const Frame& frame) -> Result<void> {
-            bracket.frames.push_back(frame);
-            return {};
-        });
+        const auto taken =
+            sequencer.bracket(state, plan, {.frame = [&](const Frame& frame) -> Result<void> {
+                                  bracket.frames.push_back(frame);
+                                  return {};
+                              }});
         EXPECT_TRUE(taken) << taken.error().message;
     }
     return frames;

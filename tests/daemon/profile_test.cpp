@@ -107,6 +107,19 @@ TEST_F(Profile, ALightTrapIsKnownTo1eMinus5UnlessTheFileSaysOtherwise) {
     EXPECT_NE(read(text).error().message.find("zero_uncertainty_per_sr"), std::string::npos);
 }
 
+TEST_F(Profile, AnLedWarmsUpForTwoSecondsUnlessTheFileSaysOtherwise) {
+    EXPECT_EQ(read(kGood)->warmUp, Seconds(2));
+    std::string text(kGood);
+    const std::size_t at = text.find("drift_relative");
+    ASSERT_NE(at, std::string::npos);
+    text.insert(at, "warm_up_s = 0\n");
+    const auto none = read(text);
+    ASSERT_TRUE(none) << none.error().message;
+    EXPECT_EQ(none->warmUp, Seconds(0));
+    text.replace(text.find("warm_up_s = 0"), 13, "warm_up_s = -1");
+    EXPECT_NE(read(text).error().message.find("warm_up_s"), std::string::npos);
+}
+
 TEST_F(Profile, RefusesAnotherSchemaAndSaysWhichItSaw) {
     std::string text = without("schema");
     text.insert(0, "schema = \"gonio/rig/2\"\n");

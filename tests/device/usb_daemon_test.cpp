@@ -1,10 +1,12 @@
 // goniod and gonio as they are shipped, on a rig on USB: the real libraries in the daemon's
 // process, the simulated rig behind the mocked bus in this one.
 
+#include <array>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "daemon/logbook.h"
 #include "daemon/measurement.h"
 #include "daemon/sim_bench.h"
 #include "tests/daemon/cli/running_daemon.h"
@@ -75,6 +77,44 @@ protected:
         client.set_default_headers({{"Host", "localhost"}});
         return client;
     }
+    void cause(sim::DueFault fault) {
+        rig.live().with([&](sim::FaultyUsb& usb) { usb.cause(std::move(fault)); });
+    }
+    /// In the middle of its lit frames.
+    [[nodiscard]] pid_t beginSensor() {
+        const pid_t client = begin({"--json", "calibrate", "sensor"});
+        await("a lit LED", [&](const Json& now) {
+            return lit() && now["job"].is_object() && now["job"]["step"] >= 20;
+        });
+        return client;
+    }
+    /// A measurement in whose middle the rig is unplugged, and comes back in this way.
+    void measureInterrupted(const std::string& name, sim::FaultKind comesBack) {
+        const pid_t client = begin({"--json", "measure", name, "--effort", "draft"});
+        await("the states' frames",
+              [](const Json& now) { return now["job"].is_object() && now["job"]["step"] >= 21; });
+        rig.unplug();
+        awaitState("interrupted");
+        cause({.kind = comesBack});
+        EXPECT_EQ(end(client), 0) << test::textOf(gonio / "client.err");
+        const Json measured = Json::parse(test::textOf(gonio / "client.out"));
+        const Json& gaps = measured["interruptions"];
+        ASSERT_EQ(gaps.size(), 1U) << gaps;
+        EXPECT_EQ(gaps[0]["same_boot"], comesBack == sim::FaultKind::Plug);
+        EXPECT_EQ(ask({"info", measured["file"]})["interruptions"], 1);
+    }
+    /// Data of the kept events of this type.
+    [[nodiscard]] std::string eventsOf(const std::string& type) const {
+        auto book = daemon::Logbook::open(gonio / "store");
+        EXPECT_TRUE(book) << book.error().message;
+        std::string all;
+        const auto events = book->eventsAfter(0, 1000);
+        EXPECT_TRUE(events) << events.error().message;
+        for (const daemon::EventRecord& event : *events) {
+            if (event.type == type) all += event.data + "\n";
+        }
+        return all;
+    }
     /// Begins a job that no client follows.
     void post(const std::string& kind) const {
         const auto answer =
@@ -144,8 +184,8 @@ std::string csvOf(const test::Program& gonio, const std::string& sample) {
     return test::rowsOfCsv(file);
 }
 
-/// The same on the simulated rig in the daemon's own process.
-std::string inProcess() {
+/// The same on the simulated rig in the daemon's own process, three times.
+std::array<std::string, 3> inProcess() {
     const test::Program gonio;
     const test::RunningDaemon daemon(gonio);
     const auto run = [&](const std::vector<std::string>& arguments) {
@@ -168,8 +208,13 @@ std::string inProcess() {
         run({"calibrate", tile, "-q"});
     }
     run({"sim", "place", kSample, "-q"});
-    run({"measure", "x", "--effort", "draft", "-q"});
-    return csvOf(gonio, "x");
+    std::array<std::string, 3> all;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const std::string name(1, "xyz"[i]);
+        run({"measure", name, "--effort", "draft", "-q"});
+        all[i] = csvOf(gonio, name);
+    }
+    return all;
 }
 
 TEST_F(Lab, MeasuresOnUsbWhatItMeasuresInProcess) {
@@ -207,7 +252,13 @@ TEST_F(Lab, MeasuresOnUsbWhatItMeasuresInProcess) {
               << " MiB at most; a draft measurement " << measured["rig_seconds"]
               << " s on the rig, " << measured["compute_seconds"] << " s computing, " << frames
               << " s of processor time until the last frame\n";
-    EXPECT_TRUE(csvOf(gonio, "x") == inProcess());  // megabytes: no one reads their difference
+
+    measureInterrupted("y", sim::FaultKind::Plug);
+    measureInterrupted("z", sim::FaultKind::PlugRebooted);
+    const auto wanted = inProcess();
+    EXPECT_TRUE(csvOf(gonio, "x") == wanted[0]);  // megabytes: no one reads their difference
+    EXPECT_TRUE(csvOf(gonio, "y") == wanted[1]) << "all that an unplug costs is time";
+    EXPECT_TRUE(csvOf(gonio, "z") == wanted[2]) << "no bracket mixes boots, and each is whole";
     EXPECT_EQ(daemon.end(), 0) << daemon.log();
     EXPECT_FALSE(lit());
 }
@@ -224,7 +275,7 @@ TEST_F(LabUsb3, CalibratesTheMirrorAtSixtyFrames) {
 }
 
 TEST_F(Lab, UnpluggedInTheMiddleTheJobIsInterruptedAndTheRigIsFoundAgain) {
-    test::RunningDaemon daemon(gonio, {"--rig", "usb"});
+    test::RunningDaemon daemon(gonio, {"--rig", "usb", "--comeback-seconds", "0"});
     awaitState("idle");
     const pid_t client = begin({"--yes", "calibrate", "mirror"});
     await("the third step",
@@ -239,6 +290,43 @@ TEST_F(Lab, UnpluggedInTheMiddleTheJobIsInterruptedAndTheRigIsFoundAgain) {
     rig.plug();
     awaitState("idle");
     EXPECT_FALSE(lit());
+}
+
+TEST_F(Lab, RigThatHasLostItsPowerIsTakenUpAndTheBracketIsTakenAgain) {
+    place("white");
+    test::RunningDaemon daemon(gonio, {"--rig", "usb"});
+    awaitState("idle");
+    const pid_t client = beginSensor();
+    rig.unplug();
+    awaitState("interrupted");
+    cause({.kind = sim::FaultKind::PlugRebooted});
+    EXPECT_EQ(end(client), 0) << test::textOf(gonio / "client.err");
+    const Json gaps = Json::parse(test::textOf(gonio / "client.out"))["interruptions"];
+    ASSERT_EQ(gaps.size(), 1U) << gaps;
+    EXPECT_EQ(gaps[0]["same_boot"], false);
+    EXPECT_NE(eventsOf("setback").find("new-boot"), std::string::npos) << eventsOf("setback");
+    EXPECT_NE(eventsOf("interruption"), "");
+}
+
+TEST_F(Lab, AnotherRigInItsPlaceIsRefusedByNameAndTheJobWaitsOn) {
+    place("white");
+    test::RunningDaemon daemon(gonio, {"--rig", "usb"});
+    awaitState("idle");
+    const pid_t client = beginSensor();
+    rig.unplug();
+    awaitState("interrupted");
+    cause({.kind = sim::FaultKind::PlugAs, .name = "SIM-0099"});
+    await("both serials", [](const Json& now) {
+        const std::string obstacle =
+            now["rig"]["obstacle"].is_string() ? now["rig"]["obstacle"] : "";
+        return obstacle.find(kSerial) != std::string::npos &&
+               obstacle.find("SIM-0099") != std::string::npos;
+    });
+    EXPECT_EQ(status()["rig"]["state"], "interrupted");
+    cause({.kind = sim::FaultKind::Unplug});
+    rig.plug();
+    EXPECT_EQ(end(client), 0) << test::textOf(gonio / "client.err");
+    EXPECT_EQ(Json::parse(test::textOf(gonio / "client.out"))["interruptions"].size(), 1U);
 }
 
 TEST_F(Lab, KilledInTheMiddleTheRigGoesDarkAndTheNextDaemonTakesItUp) {
@@ -259,8 +347,23 @@ TEST_F(Lab, KilledInTheMiddleTheRigGoesDarkAndTheNextDaemonTakesItUp) {
     EXPECT_EQ(ask({"jobs"})["jobs"][0]["state"], "interrupted");
 }
 
-TEST_F(Lab, OpenInterlockFailsTheJobAndIsOverWhenItCloses) {
+TEST_F(Lab, OpenInterlockSuspendsTheJobUntilItIsClosedAgain) {
+    place("white");
     test::RunningDaemon daemon(gonio, {"--rig", "usb"});
+    awaitState("idle");
+    const pid_t client = beginSensor();
+    cause({.kind = sim::FaultKind::OpenInterlock});
+    awaitState("suspended");
+    EXPECT_NE(status()["rig"]["obstacle"].dump().find("seat it again"), std::string::npos);
+    EXPECT_FALSE(lit());
+    cause({.kind = sim::FaultKind::CloseInterlock});
+    EXPECT_EQ(end(client), 0) << test::textOf(gonio / "client.err");
+    EXPECT_NE(test::textOf(gonio / "client.err").find("seat it again"), std::string::npos);
+    EXPECT_NE(eventsOf("setback").find("suspended"), std::string::npos);
+}
+
+TEST_F(Lab, OpenInterlockFailsTheJobThatDoesNotWaitAndIsOverWhenItCloses) {
+    test::RunningDaemon daemon(gonio, {"--rig", "usb", "--comeback-seconds", "0"});
     awaitState("idle");
     const pid_t client = begin({"--yes", "calibrate", "mirror"});
     await("a lit LED", [&](const Json&) { return lit(); });

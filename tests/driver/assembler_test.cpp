@@ -261,14 +261,6 @@ TEST(Assembler, FlushIsNoLossAndMakesOlderChunksStale) {
     EXPECT_EQ(assembler.anomalies().lostChunks, 0U);
 }
 
-TEST(Assembler, RestartedStreamIsNoLoss) {
-    Assembler assembler = expecting(2);
-    feedAll(assembler, frame(0, 1));
-    assembler.streamRestarted();
-    feedAll(assembler, frame(1, 5000));
-    EXPECT_EQ(assembler.anomalies(), Anomalies{});
-}
-
 TEST(Assembler, TellsWhyAFrameWasAborted) {
     Assembler assembler = expecting(1);
     const auto header = decodeChunk(frame(0, 1)[0])->header;

@@ -199,6 +199,19 @@ TEST(RigLink, SilentRigIsAnErrorAfterThreeSends) {
     EXPECT_TRUE(mentions(answer.error(), "PING to rig TEST-0001: no ACK after 3 sends"));
     EXPECT_EQ(rig.log.size(), 3U);
     EXPECT_EQ(rig.clock().now() - start, 300ms);
+    EXPECT_TRUE(mentions(*link->lost(), "it answers, but takes no commands"));
+}
+
+TEST(RigLink, AfterThreeSendsAProbeSaysWhyTheRigIsLost) {
+    ScriptedRig rig;
+    const auto link = opened(rig);
+    rig.deaf = rig.mute = true;
+    ++rig.ident.bootId;
+    for (const auto at : {100ms, 200ms}) rig.sendInput({0x7F}, at);  // reports are not silent
+    const auto answer = link->command(Op::Ping);
+    ASSERT_FALSE(answer);
+    EXPECT_TRUE(mentions(answer.error(), "has rebooted")) << answer.error().message;
+    EXPECT_TRUE(link->lost());
 }
 
 TEST(RigLink, LateAckOfARepeatedCommandStraysHarmlessly) {
@@ -307,7 +320,31 @@ TEST(RigLink, StatusIsFreshOrAnError) {
     rig.mute = true;
     const Nanoseconds start = rig.clock().now();
     EXPECT_FALSE(link->freshStatus());
-    EXPECT_EQ(rig.clock().now() - start, 300ms);
+    EXPECT_LE(rig.clock().now() - start, 900ms);
+    EXPECT_EQ(link->reopens(), 2U);
+    EXPECT_TRUE(link->lost()) << "so that it may come back";
+}
+
+TEST(RigLink, StatusIsAwaitedUntilSilentReportsWereOpenedAnew) {
+    for (const int reopens : {1, 2}) {
+        ScriptedRig rig;
+        const auto link = opened(rig);
+        rig.mute = true;
+        rig.reopensToHear = reopens;
+        const auto now = link->freshStatus();
+        ASSERT_TRUE(now) << now.error().message;
+        EXPECT_EQ(link->reopens(), static_cast<std::uint32_t>(reopens));
+    }
+}
+
+TEST(RigLink, ARigThatSaysAllButItsStatusIsAnError) {
+    ScriptedRig rig;
+    const auto link = opened(rig);
+    rig.mute = true;
+    for (int i = 0; i < 100; ++i) rig.sendInput({0x7F}, i * 100ms);
+    const Nanoseconds start = rig.clock().now();
+    EXPECT_FALSE(link->freshStatus());
+    EXPECT_LE(rig.clock().now() - start, 2s);
 }
 
 TEST(RigLink, RebootIsAnError) {
@@ -358,6 +395,29 @@ TEST(RigLink, EventsThatTheRigHasForgottenAreCounted) {
     rig.raise({.sequence = 6, .code = event::kBoot}, false);  // 1..5 are gone
     EXPECT_EQ(link->takeEvents()->size(), 1U);
     EXPECT_EQ(link->counters().missedEvents, 5U);
+}
+
+TEST(RigLink, EventsThatCouldNotBeReadAreReadAtTheNextStatus) {
+    for (int ScriptedRig::*const trouble :
+         {&ScriptedRig::spoilEvents, &ScriptedRig::refuseEvents}) {
+        ScriptedRig rig;
+        const auto link = opened(rig);
+        const Event opened1{.sequence = 1, .code = event::kInterlockOpened};
+        rig.raise(opened1, false);
+        const int looks = rig.eventPages;
+        rig.*trouble = 1;
+        rig.pass(100ms);
+        for (int i = 0; i < 10; ++i) ASSERT_TRUE(link->keepAlive());
+        EXPECT_EQ(rig.eventPages, looks + 1) << "one look each STATUS";
+        EXPECT_EQ(link->counters().badReports, 1U);
+        rig.pass(100ms);
+        ASSERT_TRUE(link->keepAlive());
+        EXPECT_EQ(rig.eventPages, looks + 2);
+        rig.*trouble = 1;
+        const auto events = link->takeEvents();
+        ASSERT_TRUE(events) << events.error().message;
+        EXPECT_EQ(*events, (std::vector<Event>{opened1}));
+    }
 }
 
 TEST(RigLink, ARigThatPromisesEventsItDoesNotHaveCostsOneLook) {

@@ -165,6 +165,29 @@ TEST_F(RigComeback, AnotherBootBetweenCapturesIsToldByTheNextOneOnce) {
     }
 }
 
+TEST(RigComebackAnywhere, AnotherBootIsToldThoughItsOwnerGaveUpOnTheWay) {
+    for (int cut = 0; cut < 20; ++cut) {
+        SCOPED_TRACE("the second cable breaks at call " + std::to_string(cut));
+        Bench bench;
+        int losses = 0;
+        bench.broken = [&] { losses++ == 0 ? bench.device.powerLost() : bench.device.linkLost(); };
+        bench.plugs.onPlug = [&](LooseCable& cable) { cable.breaksAt = cut; };
+        int tries = 0;
+        bench.rig->onLost([&](const Error& lost) -> Result<Transport*> {
+            if (tries++ > 0) return Error{ErrorKind::Interrupted, "the job was cancelled"};
+            return bench.plugs.comeback()(lost);
+        });
+        bench.breakAfter(0);
+        (void)bench.rig->keepAlive();
+        bench.plugs.onPlug = {};
+        bench.rig->onLost(bench.plugs.comeback());
+        const auto told = bench.rig->capture(kRequest);
+        ASSERT_FALSE(told);
+        EXPECT_TRUE(mentions(told.error(), "redo the bracket")) << told.error().message;
+        expectUndisturbed(bench.rig->capture(kRequest), kRequest);
+    }
+}
+
 TEST_F(RigComeback, ConfigureBeginsAnewWithAnotherBoot) {
     broken = [&] { device.powerLost(); };
     breakAfter(0);
@@ -280,6 +303,77 @@ TEST_F(RigComeback, AFaultOfTheStreamEndsTheCaptureAndNobodyIsAskedToComeBack) {
     ASSERT_FALSE(capture);
     EXPECT_TRUE(mentions(capture.error(), "three times in 10 s")) << capture.error().message;
     EXPECT_TRUE(plugs.losses.empty());
+    plugs.cable().over = true;
+    EXPECT_FALSE(rig->status()) << "lost it stays";
+    plugs.cable().over = false;
+    expectUndisturbed(rig->capture(kRequest), kRequest);  // the next call asks
+    EXPECT_EQ(plugs.losses.size(), 1U);
+    device.onStream = first(
+        1, [this](std::vector<Bytes>&) { plugs.cable().fault = streamFault("rig TEST-0001"); });
+    EXPECT_FALSE(rig->capture(kRequest)) << "another fault is told as the first was";
+    EXPECT_EQ(plugs.losses.size(), 1U);
+}
+
+TEST_F(RigComeback, ReportsThatStaySilentForGoodEndTheCall) {
+    for (const auto exposure : {Microseconds(1000), Microseconds(1'000'000)}) {
+        SCOPED_TRACE(std::to_string(exposure.count()) + " us");
+        device.mute = true;
+        device.onStream = [](std::vector<Bytes>& chunks) { chunks.clear(); };
+        plugs.losses.clear();
+        CaptureRequest request = kRequest;
+        request.exposure = exposure;
+        const auto capture = rig->capture(request);
+        ASSERT_FALSE(capture);
+        EXPECT_TRUE(mentions(capture.error(), "times in one call")) << capture.error().message;
+        EXPECT_TRUE(mentions(capture.error(), "stay silent")) << capture.error().message;
+        EXPECT_GT(plugs.losses.size(), 5U);
+        EXPECT_LT(plugs.losses.size(), 50U);
+        device.mute = false;
+        device.onStream = {};
+        expectUndisturbed(rig->capture(kRequest), kRequest);
+    }
+}
+
+/// The second of three frames and the third are on their way.
+Result<Capture> captureWithAGapInTheSink(Bench& bench, Capture& given) {
+    return bench.rig->capture(kRequest, {}, [&](Frame frame) -> Result<void> {
+        given.frames.push_back(std::move(frame));
+        if (given.size() > 1) return {};
+        bench.breakAfter(0);
+        return bench.rig->keepAlive();
+    });
+}
+
+TEST(RigComebackInASink, CostsNoFrameAndIsNoFaultOfTheRig) {
+    for (const bool held : {true, false}) {
+        Bench bench;
+        if (!held) {
+            bench.broken = [&] {
+                bench.device.linkLost();
+                bench.device.forgetFrames();
+            };
+        }
+        Capture given;
+        const auto capture = captureWithAGapInTheSink(bench, given);
+        ASSERT_TRUE(capture) << capture.error().message;
+        expectUndisturbed(given, kRequest);
+        EXPECT_EQ(capture->recaptures + capture->resends, 0);
+        const auto gaps = bench.rig->takeInterruptions();
+        ASSERT_EQ(gaps.size(), 1U);
+        EXPECT_EQ(gaps[0].resent, held ? 2 : 0);
+        EXPECT_EQ(gaps[0].redone, held ? 0 : 2);
+    }
+}
+
+TEST(RigComebackInASink, AnotherBootEndsTheCapture) {
+    Bench bench;
+    bench.broken = [&] { bench.device.powerLost(); };
+    Capture given;
+    const auto capture = captureWithAGapInTheSink(bench, given);
+    ASSERT_FALSE(capture);
+    EXPECT_TRUE(mentions(capture.error(), "redo the bracket")) << capture.error().message;
+    EXPECT_EQ(given.size(), 1U);
+    EXPECT_EQ(bench.device.count(Op::Resend), 0) << "there is nothing to ask another boot for";
 }
 
 TEST_F(RigComeback, TheClockGoesOnAndNeverBack) {

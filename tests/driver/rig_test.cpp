@@ -164,6 +164,21 @@ TEST(Rig, ASinkIsGivenEachFrameOnceInOrderThroughAllRepairs) {
     }
 }
 
+TEST(Rig, ASinkThatTakesItsTimeMakesNoFrameLate) {
+    ScriptedRig device;
+    Rig rig = configured(device);
+    Capture given;
+    const auto capture = rig.capture(kRequest, {}, [&](Frame frame) -> Result<void> {
+        given.frames.push_back(std::move(frame));
+        device.pass(2s);
+        return rig.keepAlive();
+    });
+    ASSERT_TRUE(capture) << capture.error().message;
+    expectUndisturbed(given, kRequest);
+    EXPECT_EQ(device.count(Op::Resend), 0);
+    EXPECT_EQ(capture->anomalies, Anomalies{});
+}
+
 TEST(Rig, AnErrorOfTheSinkEndsTheCapture) {
     ScriptedRig device;
     Rig rig = configured(device);

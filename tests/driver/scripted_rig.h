@@ -55,7 +55,10 @@ public:
     std::map<Op, std::uint16_t> refuse;  ///< final statuses
     std::uint32_t latency = 0;           ///< frames until SET_LED and SET_EXPOSURE take effect
     bool mute = false;                   ///< no STATUS reports
+    int reopensToHear = 0;               ///< mute ends when reports were opened anew so often
     int refuseWrites = 0;                ///< the next ones stall
+    int refuseEvents = 0;                ///< the next EVENTS pages stall
+    int spoilEvents = 0;                 ///< the next EVENTS pages come damaged
     std::uint32_t promisedEvents = 0;    ///< newest_event_seq of STATUS, whatever there is
     RigState state = RigState::Idle;
     std::uint16_t fault = 0;
@@ -162,7 +165,7 @@ public:
             case ReportId::Limits: return encode(limits);
             case ReportId::Session: return encode(session);
             case ReportId::Stats: return encode(Stats{.commandsDone = 7});
-            case ReportId::Events: ++eventPages; return encode(eventsPage());
+            case ReportId::Events: return readEvents();
             case ReportId::LastAck:
                 if (noLastAck || !lastAck_) return Report{};
                 return encode(*lastAck_, ReportId::LastAck);
@@ -206,6 +209,7 @@ public:
     }
     Result<void> reopenReports() override {
         inputs_.clear();
+        if (reopensToHear > 0 && --reopensToHear == 0) mute = false;
         return {};
     }
     Result<void> resetPort() override {
@@ -235,6 +239,20 @@ private:
         for (const Event& event : events_) {
             if (event.sequence >= eventsFrom_ && page.events.size() < 2)
                 page.events.push_back(event);
+        }
+        return page;
+    }
+
+    Result<Report> readEvents() {
+        ++eventPages;
+        if (refuseEvents > 0) {
+            --refuseEvents;
+            return Error{ErrorKind::Device, "stalled"};
+        }
+        Report page = encode(eventsPage());
+        if (spoilEvents > 0) {
+            --spoilEvents;
+            page.back() ^= 1;
         }
         return page;
     }

@@ -92,6 +92,32 @@ TEST_F(Watched, AnotherBootIsALossAndNothingIsReset) {
     EXPECT_EQ(cable.resets, 0);
 }
 
+/// Its clock goes on at each look, as real ones do.
+class Restless : public LooseCable, private Clock {
+public:
+    using LooseCable::LooseCable;
+    Nanoseconds shortest = 1h;  ///< of the waits that were asked for
+
+    [[nodiscard]] const Clock& clock() const override { return *this; }
+    [[nodiscard]] Result<std::optional<Report>> readInput(Nanoseconds wait) override {
+        shortest = std::min(shortest, wait);
+        return LooseCable::readInput(wait);
+    }
+
+private:
+    [[nodiscard]] Nanoseconds now() const override { return now_ += 1us; }
+    mutable Nanoseconds now_{0};
+};
+
+TEST(WatchedOnARealClock, NoWaitIsNegative) {
+    ScriptedRig rig;
+    Restless cable(rig, [] {});
+    WatchedTransport wire(cable);
+    wire.watch(rig.ident.bootId);
+    for (const Nanoseconds wait : {0ns, 500ns, 5000ns}) EXPECT_TRUE(wire.readInput(wait));
+    EXPECT_GE(cable.shortest, 0ns);
+}
+
 TEST(WatchedBefore, NothingIsJudged) {
     ScriptedRig rig;
     rig.mute = true;

@@ -144,7 +144,6 @@ enum Deed : std::uint8_t {
     AskAgain = 2,
     MoveOn = 4,
     Flush = 8,
-    Restart = 16,
     Leave = 32
 };
 
@@ -241,7 +240,6 @@ std::optional<Error> readTransfers(std::string_view text) {
             if (!assembler.expectNext(expected(left.size(), 2))) return wrong("not expected");
         }
         if ((deed & Flush) != 0) assembler.flushed(static_cast<std::uint32_t>(left.size()));
-        if ((deed & Restart) != 0) assembler.streamRestarted();
     }
     return std::nullopt;
 }

@@ -47,6 +47,69 @@ TEST(FrameCheck, PicturesWithoutNoiseAreNotCalledRepeated) {
     EXPECT_FALSE(isRepeated({}, {}, kNoise));
 }
 
+TEST(FrameCheck, NoPictureIsOneWithoutNoise) {
+    Frame blank = picture(1, 0);
+    std::ranges::fill(blank.pixels.pixels(), std::uint16_t{60});
+    EXPECT_TRUE(isBlank(blank, kNoise));
+    EXPECT_FALSE(isBlank(picture(1, 0), kNoise)) << "a dark one has its noise";
+    EXPECT_FALSE(isBlank(picture(1, 1e6), kNoise)) << "full scale hides it";
+    const SensorNoise coarse{.electronsPerDn = 41.6, .fullScaleDn = 255};
+    EXPECT_FALSE(isBlank(blank, coarse)) << "rounding hides it";
+    EXPECT_FALSE(isRepeated(blank, blank, coarse));
+}
+
+/// `picture` as one of another exposure or level.
+Frame shown(Frame frame, Microseconds exposure, std::uint16_t level = 65535) {
+    frame.exposure.granted = exposure;
+    frame.levels = LedLevels::only(Band::G, level);
+    frame.blackLevel = 60;
+    return frame;
+}
+
+TEST(FrameCheck, LightGoesWithTheExposure) {
+    using namespace std::chrono_literals;
+    const auto agrees = [](const Frame& frame, const Frame& before) {
+        return agreement(frame, before, Band::G, kNoise);
+    };
+    const Frame before = shown(picture(1, 500), 1000us);
+    EXPECT_EQ(agrees(shown(picture(2, 1000), 2000us), before), Agreement::Agrees);
+    EXPECT_EQ(agrees(shown(picture(2, 500), 2000us), before), Agreement::Darker);
+    EXPECT_EQ(agrees(shown(picture(2, 1000), 1000us), before), Agreement::Brighter);
+    EXPECT_EQ(agrees(shown(picture(2, 0), 1000us), before), Agreement::Darker) << "unlit";
+    EXPECT_EQ(agrees(shown(picture(2, 500), 40'000us), before), Agreement::Darker)
+        << "all of it should be saturated";
+    EXPECT_EQ(agrees(shown(picture(2, 20'000), 40'000us), before), Agreement::Agrees);
+    EXPECT_EQ(agrees(shown(picture(2, 850), 34us), shown(picture(1, 500), 20us)),
+              Agreement::Agrees);
+    EXPECT_EQ(agrees(shown(picture(2, 850), 20us), shown(picture(1, 500), 20us)), Agreement::Agrees)
+        << "a sensor may add 14 us to each";
+    EXPECT_EQ(agrees(shown(picture(2, 0.4), 2000us), shown(picture(1, 0.1), 1000us)),
+              Agreement::Agrees)
+        << "too dark to tell";
+    EXPECT_EQ(agrees(shown(picture(2, 500), 2000us, 30000), before), Agreement::Agrees)
+        << "of another level light that leaks in may be most of it";
+}
+
+TEST(FrameCheck, SaturationWhereItWasDimIsAReflex) {
+    using namespace std::chrono_literals;
+    const auto with = [](int side) {
+        Frame frame = shown(picture(2, 1000), 2000us);
+        for (int y = 40; y < 40 + side; ++y)
+            for (int x = 40; x < 40 + side; ++x) frame.pixels.at(x, y) = 4095;
+        return frame;
+    };
+    const Frame before = shown(picture(1, 500), 1000us);
+    EXPECT_EQ(agreement(with(7), before, Band::G, kNoise), Agreement::Reflex);
+    EXPECT_EQ(agreement(with(3), before, Band::G, kNoise), Agreement::Agrees)
+        << "a particle's trace";
+    const Frame dim = shown(picture(1, 100), 1000us, 6554);
+    EXPECT_EQ(agreement(with(7), dim, Band::G, kNoise), Agreement::Reflex) << "of any level";
+    const Frame bright = shown(picture(1, 6000), 1000us);
+    EXPECT_EQ(agreement(shown(picture(2, 12'000), 2000us), bright, Band::G, kNoise),
+              Agreement::Agrees)
+        << "it was foretold";
+}
+
 TEST(FrameCheck, ALitFrameWithoutLightIsSeen) {
     // Noise of the mean of 128 x 128 pixels: sqrt(6.3 + 1.4) / 128 = 0.022 electrons.
     constexpr double kWhite = 5000;

@@ -104,5 +104,23 @@ TEST(Streaming, ASlowReaderHoldsTheRigBackAndLosesNothing) {
     EXPECT_EQ(slow.door.device().stats().framesMade, 40U) << "none was exposed twice";
 }
 
+TEST(Streaming, AReaderThatIsBusyForSecondsLosesNothing) {
+    Opened on;
+    int given = 0;
+    const auto capture = on.rig->capture(dark(1, 20), {}, [&](const Frame&) -> Result<void> {
+        ++given;
+        for (int i = 0; i < 20; ++i) {  // two seconds, in which the heart beats
+            on.door.device().advanceTo(on.door.device().now() + 100ms);
+            if (auto alive = on.rig->keepAlive(); !alive) return alive;
+        }
+        return {};
+    });
+    ASSERT_TRUE(capture) << capture.error().message;
+    EXPECT_EQ(given, 20);
+    EXPECT_EQ(capture->anomalies, driver::Anomalies{});
+    EXPECT_EQ(capture->resends + capture->recaptures, 0);
+    EXPECT_EQ(on.door.device().stats().framesMade, 20U) << "none was exposed twice";
+}
+
 }  // namespace
 }  // namespace gonio

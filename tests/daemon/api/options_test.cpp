@@ -26,12 +26,13 @@ const std::string kSchema = "schema = \"gonio/goniod/1\"\n";
 TEST_F(DaemonOptionsFile, SaysWhereEverythingIs) {
     const auto options = read(kSchema +
                               "rig = \"usb:MD-7\"\nstore = \"/s\"\nsocket = \"/s/x.sock\"\n"
-                              "profile = \"/p.toml\"\nrecord = \"/r\"\n");
+                              "profile = \"/p.toml\"\nrecord = \"/r\"\ncomeback_seconds = 90\n");
     ASSERT_TRUE(options) << options.error().message;
     EXPECT_EQ(options->rig, "usb:MD-7");
     EXPECT_EQ(options->store, "/s");
     EXPECT_EQ(options->socket, "/s/x.sock");
     EXPECT_EQ(options->profile, "/p.toml");
+    EXPECT_EQ(options->comebackSeconds, 90);
     EXPECT_EQ(options->record, "/r");
 }
 
@@ -39,6 +40,7 @@ TEST_F(DaemonOptionsFile, EveryKeyMayBeAbsent) {
     const auto options = read(kSchema);
     ASSERT_TRUE(options) << options.error().message;
     EXPECT_EQ(options->rig, "");
+    EXPECT_FALSE(options->comebackSeconds);
     EXPECT_TRUE(options->store.empty());
 }
 
@@ -47,6 +49,7 @@ TEST_F(DaemonOptionsFile, IsRefusedWithItsNameAndTheKey) {
     EXPECT_TRUE(refuses(read("schema = \"gonio/goniod/2\"\n"), {"schema", "gonio/goniod/1"}));
     EXPECT_TRUE(refuses(read(kSchema + "rigs = \"sim\"\n"), {"goniod.toml", "'rigs'"}));
     EXPECT_TRUE(refuses(read(kSchema + "rig = 7\n"), {"'rig'", "a text"}));
+    EXPECT_TRUE(refuses(read(kSchema + "comeback_seconds = -1\n"), {"'comeback_seconds'", "0"}));
     EXPECT_TRUE(refuses(read(kSchema + "[rig]\nname = \"sim\"\n"), {"'rig'"}));
     EXPECT_TRUE(refuses(read(kSchema + "rig = \n"), {"goniod.toml"}));
     EXPECT_TRUE(refuses(read("\xFF\xFE"), {"goniod.toml"}));

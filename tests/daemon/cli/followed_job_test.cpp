@@ -43,6 +43,24 @@ TEST_F(WithScriptedDaemon, StreamThatBreaksOffIsTakenUpAgainWhereItWas) {
     EXPECT_NE(ran.out.find("12 states"), std::string::npos) << ran.out;
 }
 
+TEST_F(WithScriptedDaemon, WhatTheJobWaitsForIsSaidAndThatItGoesOn) {
+    const auto rig = [](const std::string& state, const std::string& detail) {
+        return R"(event: rig
+data: {"state":")" +
+               state + R"(","serial":"S","detail":")" + detail + "\"}";
+    };
+    daemon.play({.events = {rig("running", ""),
+                            rig("suspended", "INTERLOCK: seat it again"),
+                            rig("running", ""),
+                            kDone},
+                 .job = kDocument});
+    const Ran ran = calibrate();
+    EXPECT_EQ(ran.exitCode, 0) << ran.err;
+    EXPECT_NE(ran.err.find("waiting for the rig: INTERLOCK: seat it again\nthe job goes on\n"),
+              std::string::npos)
+        << ran.err;
+}
+
 TEST_F(WithScriptedDaemon, JobIsFollowedWithoutAStreamToo) {
     daemon.play({.refusesStreams = true, .job = kDocument});
     const Ran ran = calibrate();

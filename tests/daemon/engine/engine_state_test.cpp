@@ -12,9 +12,17 @@ using enum EngineState;
 using enum EngineEvent;
 
 constexpr EngineState kStates[] = {
-    Offline, Connecting, Idle, Running, Finishing, Interrupted, Fault};
-constexpr EngineEvent kEvents[] = {
-    Appeared, Claimed, Lost, JobBegun, Captured, JobEnded, FaultSeen, FaultCleared};
+    Offline, Connecting, Idle, Running, Finishing, Suspended, Interrupted, Fault};
+constexpr EngineEvent kEvents[] = {Appeared,
+                                   Claimed,
+                                   Lost,
+                                   JobBegun,
+                                   Captured,
+                                   JobEnded,
+                                   FaultSeen,
+                                   FaultCleared,
+                                   Hindered,
+                                   Resumed};
 
 std::set<EngineState> reachedFrom(EngineState from) {
     std::set<EngineState> reached;
@@ -64,6 +72,17 @@ TEST(EngineState, LostRigIsClaimedAgainBeforeItIsIdle) {
     EXPECT_EQ(next(Connecting, Claimed), Idle);
     EXPECT_FALSE(next(Interrupted, Claimed));
     EXPECT_FALSE(next(Interrupted, JobEnded)) << "a job's end does not bring a rig back";
+}
+
+TEST(EngineState, JobGoesOnWhenItsRigIsBackOrMayLightAgain) {
+    EXPECT_EQ(next(Running, Hindered), Suspended);
+    EXPECT_EQ(next(Suspended, Resumed), Running);
+    EXPECT_EQ(next(Interrupted, Resumed), Running);
+    EXPECT_EQ(next(Suspended, Lost), Interrupted);
+    EXPECT_EQ(next(Suspended, JobEnded), Idle) << "cancelled: the rig's fault shows by itself";
+    for (const EngineState state : kStates) {
+        EXPECT_EQ(next(state, Hindered).has_value(), state == Running) << name(state);
+    }
 }
 
 TEST(EngineState, FaultEndsWhenItsCauseIsGone) {

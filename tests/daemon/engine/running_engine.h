@@ -34,14 +34,18 @@ inline daemon::RigProfile quickProfile() {
 
 class RunningEngine {
 public:
-    RunningEngine(const std::filesystem::path& store, daemon::RigPort& port) {
+    /// `patience`: how long a job waits for its rig.
+    RunningEngine(const std::filesystem::path& store,
+                  daemon::RigPort& port,
+                  Seconds patience = Seconds(0)) {
         auto opened = daemon::Engine::open(store,
                                            port,
                                            quickProfile(),
                                            {.clock = clock_,
                                             .utcNow = [] { return "2026-01-02T03:04:05Z"; },
                                             .randomId = [this] { return 0x100000001U + ids_++; },
-                                            .alive = [this] { ++alive_; }});
+                                            .alive = [this] { ++alive_; },
+                                            .patience = patience});
         EXPECT_TRUE(opened) << opened.error().message;
         if (!opened) return;
         engine_ = std::move(*opened);

@@ -1,0 +1,102 @@
+// A job goes on: after its rig was lost, once the same one is there again, and after it would not
+// light, once it may.
+
+#include "daemon/engine/engine.h"
+#include "daemon/engine/fault_text.h"
+#include "daemon/engine/monitor.h"
+#include "proc/core/log.h"
+#include "proc/core/number_text.h"
+
+namespace gonio::daemon {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kPause = 100ms;  // between two looks at a clock, a wish and a rig
+
+Error gaveUp(const Error& why, Seconds patience) {
+    return {
+        why.kind, why.message + "; waited " + fixed(patience.count(), 0) + " s", why.deviceStatus};
+}
+
+}  // namespace
+
+/// Or until somebody wants the job to end.
+void Engine::pause() {
+    std::unique_lock lock(mutex_);
+    asked_.wait_for(lock, kPause, [&] { return wish_ == Wish::Cancel; });
+}
+
+/// Outside of a job nobody waits: the owner looks for it again by itself.
+Result<driver::Transport*> Engine::comeBack(const Error& lost) {
+    if (monitor_ == nullptr || !monitor_->mayWait()) return lost;
+    log::warning(monitor_->job() + ": " + lost.message + "; waiting for the rig");
+    port_.close();
+    publish([](EngineStatus& status) { status.rig.reset(); });
+    hinder(lost);
+    advance(EngineEvent::Lost, lost.message);
+    while (monitor_->mayWait()) {
+        world_.alive();
+        if (Result<void> on = monitor_->goOn(); !on) return on.error();
+        if (world_.clock.now() >= nextTry_) {
+            Result<driver::Transport*> there = lookAgain();
+            if (there) return there;
+            hinder(there.error());
+        }
+        pause();
+    }
+    return gaveUp(lost, world_.patience);
+}
+
+/// The rig itself refuses another boot's or another host's claim; it is lost again then.
+Result<driver::Transport*> Engine::lookAgain() {
+    nextTry_ = world_.clock.now() + kRescanning;
+    Result<driver::Transport*> there = port_.open();
+    if (!there) return there;
+    const std::string wanted = status().serial, found = (*there)->strings().serial;
+    if (found != wanted) {
+        port_.close();
+        return Error{
+            ErrorKind::NoRig,
+            "the job is on rig " + wanted + ", refused is " + found + ": plug the first in again"};
+    }
+    advance(EngineEvent::Resumed);
+    hinder({});
+    return there;
+}
+
+Result<void> Engine::awaitLight(const Error& why) {
+    if (monitor_ == nullptr || !monitor_->mayWait()) return why;
+    const std::string wanted = explained(static_cast<std::uint16_t>(why.deviceStatus));
+    log::warning(monitor_->job() + ": " + wanted);
+    while (monitor_->mayWait()) {
+        hinder(Error{ErrorKind::Device, wanted, why.deviceStatus});
+        advance(EngineEvent::Hindered, wanted);  // also after it was lost meanwhile
+        world_.alive();
+        if (Result<void> on = monitor_->goOn(); !on) return on;
+        const Result<bool> may = mayLight();
+        if (!may) return may.error();
+        if (*may) {
+            advance(EngineEvent::Resumed);
+            hinder({});
+            return {};
+        }
+        pause();
+    }
+    return gaveUp(why, world_.patience);
+}
+
+/// Its cause is gone, and the fault is cleared.
+Result<bool> Engine::mayLight() {
+    if (Result<void> there = rig_->keepAlive(); !there) return there.error();
+    const Result<driver::Status> said = rig_->status();
+    if (!said) return false;  // lost: the next look finds it again, or not
+    publish([&](EngineStatus& status) { status.rig = *said; });
+    const bool closed =
+        (said->interlock & driver::interlock::kMayLight) == driver::interlock::kMayLight;
+    if (!closed) return false;
+    if (said->state != driver::RigState::Fault) return true;
+    return rig_->link().command(driver::Op::ClearFault).has_value();
+}
+
+}  // namespace gonio::daemon

@@ -1,0 +1,66 @@
+#pragma once
+// A bracket is of one piece, or it is taken again from its first shot:
+//   - when the rig has booted meanwhile. Its LED is lit for the profile's warm-up before; at most
+//     three times, or the rig does not stay up;
+//   - when the rig would not light (interlock, temperature), once it may light again;
+//   - when a frame is not what was asked for (frame_watch.h). One that is odd once more is refused
+//     with its evidence; but a bracket without light then is what lies there.
+// Any other error ends it.
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "daemon/attendance.h"
+#include "daemon/frame_watch.h"
+#include "daemon/profile.h"
+#include "daemon/state.h"
+#include "driver/rig.h"
+
+namespace gonio::daemon {
+
+class WholeBrackets {
+public:
+    /// All is borrowed. `nextPlanStep`: frames that warm up and are thrown away need none of their
+    /// own.
+    WholeBrackets(driver::Rig& rig,
+                  const RigProfile& profile,
+                  const std::uint64_t& nextPlanStep,
+                  const Attendance& attendance);
+
+    /// `attempt` takes all shots of a bracket, whose first is of `state`, and shows each frame to
+    /// look() before it is used.
+    [[nodiscard]] Result<void> take(std::optional<State> state,
+                                    const std::function<Result<void>()>& attempt);
+    /// An error, which has to end the attempt, for one that is not what was asked for.
+    [[nodiscard]] Result<void> look(std::optional<State> state, const Frame& frame);
+    /// The driver has taken frames of it again, by what the rig said of them.
+    void rejected(const std::string& evidence) const { tell(Cause::Rejected, evidence); }
+
+    [[nodiscard]] FrameWatch& watch() { return watch_; }
+    [[nodiscard]] const std::vector<OddFrame>& oddFrames() const { return odd_; }
+
+private:
+    using Cause = Setback::Cause;
+    [[nodiscard]] Result<void> warmUp(std::optional<State> state);
+    [[nodiscard]] Result<void> mayTakeAgain(const Error& why);
+    /// Why the rig will light again, though not now; empty: that is not known.
+    [[nodiscard]] std::optional<Error> passes(const Error& why);
+    void tell(Cause cause, const std::string& message) const;
+
+    driver::Rig& rig_;
+    const RigProfile& profile_;
+    const std::uint64_t& nextPlanStep_;
+    const Attendance& attendance_;
+    FrameWatch watch_;
+    std::vector<OddFrame> odd_;
+    std::uint32_t boot_;  ///< in which the last bracket was taken
+
+    // Of the bracket at hand.
+    std::optional<State> state_;
+    int boots_ = 0, oddAttempts_ = 0;
+    bool cold_ = false;
+    bool isOdd_ = false;  ///< the newest of odd_ has ended the attempt
+};
+
+}  // namespace gonio::daemon

@@ -1,0 +1,214 @@
+// Brackets on a simulated rig that goes wrong by a script, in virtual time: what comes of them is
+// what an undisturbed rig gives, and each fault is told by its cause.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "daemon/sequencer.h"
+#include "proc/models/spec.h"
+#include "sim/in_process.h"
+
+namespace gonio::daemon {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Window kWindow{.x = 512, .y = 384, .size = {256, 256}};
+constexpr State kFirst{1, Band::G}, kSecond{2, Band::R};
+
+/// A rig with a matt grey under it, whose light does not drift.
+class Bed {
+public:
+    explicit Bed(const std::string& script = {}) {
+        auto known = readProfile(defaultProfile());
+        EXPECT_TRUE(known) << known.error().message;
+        profile = std::move(*known);
+        first.device().place({.role = sim::Role::Sample,
+                              .surface = std::move(*proc::makeModel("lambert,albedo=0.5")),
+                              .wedge = {}});
+        auto opened = driver::Rig::open(first, 7);
+        EXPECT_TRUE(opened) << opened.error().message;
+        rig.emplace(std::move(*opened));
+        rig->onLost([this](const Error& lost) { return comeBack(lost); });
+        EXPECT_TRUE(rig->configure(kWindow));
+        auto faults = sim::FaultScript::parse(script);
+        EXPECT_TRUE(faults) << faults.error().message;
+        first.usb().play(std::move(*faults));
+    }
+
+    /// Two states of four exposures of two frames.
+    Result<void> take() {
+        Sequencer sequencer(*rig, profile, nextPlanStep, attendance);
+        std::vector<KnownShot> shots;
+        for (const State state : {kFirst, kSecond}) {
+            for (const Microseconds exposure : {80us, 320us, 160us, 640us})
+                shots.push_back({.state = state,
+                                 .shot = {.level = 1, .exposure = exposure},
+                                 .frames = 2,
+                                 .joins = exposure != 80us});
+        }
+        auto taken = sequencer.take(shots,
+                                    {.frame = [&](std::size_t shot, Frame&& frame) -> Result<void> {
+                                         boots[shot / 4].push_back(rig->bootId());
+                                         frames[shot / 4].push_back(std::move(frame));
+                                         return {};
+                                     },
+                                     .begin = [&](std::size_t shot) -> Result<void> {
+                                         frames[shot / 4].clear();
+                                         boots[shot / 4].clear();
+                                         return {};
+                                     }});
+        odd = sequencer.oddFrames();
+        return taken;
+    }
+    [[nodiscard]] std::vector<std::string> causes() const {
+        std::vector<std::string> names;
+        for (const Setback& one : setbacks) names.emplace_back(name(one.cause));
+        return names;
+    }
+
+    RigProfile profile;
+    sim::InProcessDoor first{{}};
+    std::vector<std::unique_ptr<sim::InProcessDoor>> doors;
+    std::optional<driver::Rig> rig;  // ends before its doors
+    std::uint64_t nextPlanStep = 1;
+    std::vector<Setback> setbacks;
+    int clearings = 0;
+    Attendance attendance{.suspended = [this](const Error& why) { return awaitLight(why); },
+                          .setback = [this](const Setback& one) { setbacks.push_back(one); }};
+    std::array<std::vector<Frame>, 2> frames;
+    std::array<std::vector<std::uint32_t>, 2> boots;
+    std::vector<OddFrame> odd;
+
+private:
+    Result<driver::Transport*> comeBack(const Error& lost) {
+        for (int looks = 0; looks < 100; ++looks) {
+            first.usb().advanceTo(first.usb().now() + 500ms);
+            auto again = first.openAgain();
+            if (!again) continue;
+            doors.push_back(std::move(*again));
+            return doors.back().get();
+        }
+        return lost;
+    }
+    Result<void> awaitLight(const Error& why) {
+        for (int looks = 0; looks < 1000; ++looks) {
+            const auto said = rig->status();
+            if (!said) return said.error();
+            const bool closed =
+                (said->interlock & driver::interlock::kMayLight) == driver::interlock::kMayLight;
+            if (!closed) continue;
+            if (said->state == driver::RigState::Fault &&
+                !rig->link().command(driver::Op::ClearFault))
+                continue;
+            ++clearings;
+            return {};
+        }
+        return why;
+    }
+};
+
+void expectSame(const Bed& seen, const Bed& wanted) {
+    for (std::size_t state = 0; state < 2; ++state) {
+        ASSERT_EQ(seen.frames[state].size(), wanted.frames[state].size());
+        for (std::size_t i = 0; i < seen.frames[state].size(); ++i) {
+            EXPECT_EQ(seen.frames[state][i].pixels, wanted.frames[state][i].pixels)
+                << "state " << state << ", frame " << i;
+        }
+        // No bracket mixes boots.
+        for (const std::uint32_t boot : seen.boots[state])
+            EXPECT_EQ(boot, seen.boots[state].front());
+    }
+}
+
+struct Case {
+    std::string name, script, cause;
+};
+
+class Setbacks : public testing::TestWithParam<Case> {};
+
+TEST_P(Setbacks, AreToldAndTheFramesAreThoseOfAnUndisturbedRig) {
+    Bed undisturbed;
+    ASSERT_TRUE(undisturbed.take());
+    EXPECT_TRUE(undisturbed.setbacks.empty());
+    Bed bed(GetParam().script);
+    const auto taken = bed.take();
+    ASSERT_TRUE(taken) << taken.error().message;
+    ASSERT_FALSE(bed.setbacks.empty());
+    for (const std::string& cause : bed.causes()) EXPECT_EQ(cause, GetParam().cause);
+    EXPECT_NE(bed.setbacks.front().message, "");
+    expectSame(bed, undisturbed);
+}
+
+// Frames 1 to 8 are the first bracket's, 9 to 16 the second's.
+INSTANTIATE_TEST_SUITE_P(
+    OnSim,
+    Setbacks,
+    testing::Values(
+        Case{"PictureAgain", "on frame 4 previous frame again", "repeated"},
+        Case{"PictureAgainOfTheBracketBefore", "on frame 9 previous frame again", "repeated"},
+        Case{"NoPicture", "on frame 3 black frame", "blank"},
+        Case{"LedNotLit", "on frame 6 unlit led", "exposure"},
+        Case{"SettingsLate", "on frame 3 late settings", "rejected"},
+        Case{"ExposureNotApplied", "on frame 3 old exposure", "exposure"},
+        Case{"ReflexOfSomebody", "on frame 7 saturating reflex", "reflex"},
+        Case{"InterlockOpenedForAWhile", "on frame 3 open interlock for 2s", "suspended"},
+        Case{"TooWarmForAWhile", "on frame 11 overheat for 3s", "suspended"},
+        Case{"PowerLost", "on frame 5 unplug\nat 3s plug rebooted", "new-boot"}),
+    [](const auto& one) { return one.param.name; });
+
+TEST(SetbacksOnSim, CableBumpIsNoneOfTheBracketsBusiness) {
+    Bed undisturbed;
+    ASSERT_TRUE(undisturbed.take());
+    Bed bed("on frame 5 unplug for 700ms");
+    const auto taken = bed.take();
+    ASSERT_TRUE(taken) << taken.error().message;
+    EXPECT_TRUE(bed.setbacks.empty()) << bed.setbacks.front().message;
+    const auto interruptions = bed.rig->takeInterruptions();
+    ASSERT_EQ(interruptions.size(), 1U);
+    EXPECT_TRUE(interruptions.front().sameBoot);
+    expectSame(bed, undisturbed);
+}
+
+TEST(SetbacksOnSim, DarkFramesWaitForTheInterlockToo) {
+    Bed bed("on frame 3 open interlock for 2s");
+    Sequencer sequencer(*bed.rig, bed.profile, bed.nextPlanStep, bed.attendance);
+    const auto darks = sequencer.darks(4, [] { return Result<void>(); });
+    ASSERT_TRUE(darks) << darks.error().message;
+    EXPECT_EQ(darks->size(), bed.profile.exposures.size());
+    EXPECT_EQ(bed.clearings, 1);
+    ASSERT_FALSE(bed.setbacks.empty());
+    EXPECT_EQ(bed.setbacks.back().cause, Setback::Cause::Suspended);
+    EXPECT_EQ(bed.setbacks.back().bracket, "dark");
+}
+
+TEST(SetbacksOnSim, FrameThatStaysOddIsRefusedWithItsEvidence) {
+    Bed bed("with chance 1 per frame black frame");
+    const auto refused = bed.take();
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().kind, ErrorKind::Quality) << refused.error().message;
+    EXPECT_NE(refused.error().message.find("once more not what was asked for"), std::string::npos)
+        << refused.error().message;
+    EXPECT_EQ(bed.odd.size(), 2U);
+}
+
+TEST(SetbacksOnSim, BrokenLedIsNotWaitedFor) {
+    Bed bed("with chance 1 per frame drifting led");
+    const auto refused = bed.take();
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().kind, ErrorKind::Device) << refused.error().message;
+    EXPECT_EQ(bed.clearings, 0);
+}
+
+TEST(SetbacksOnSim, RigThatDoesNotStayUpIsGivenUp) {
+    Bed bed("every 300ms unplug\nevery 310ms plug rebooted");
+    const auto refused = bed.take();
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().kind, ErrorKind::Device);
+    EXPECT_NE(refused.error().message.find("power supply"), std::string::npos)
+        << refused.error().message;
+}
+
+}  // namespace
+}  // namespace gonio::daemon
