@@ -53,6 +53,7 @@ data: {"state":")" +
                             rig("suspended", "INTERLOCK: seat it again"),
                             rig("running", ""),
                             kDone},
+                 .status = R"({"daemon":{"newest_event":0},"job":{"id":7,"question":null}})",
                  .job = kDocument});
     const Ran ran = calibrate();
     EXPECT_EQ(ran.exitCode, 0) << ran.err;
