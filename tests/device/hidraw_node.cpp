@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <linux/hidraw.h>
 #include <linux/input.h>
+#include <poll.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -21,14 +22,17 @@ using namespace std::chrono_literals;
 // seconds, but serves other nodes meanwhile; here one thread serves them all.)
 constexpr auto kKernelPatience = 1200ms;
 
-/// What nobody has read must not meet the next one who opens the node.
+/// What nobody has read must not meet the next one who opens the node. A terminal hands on what was
+/// written a moment later, and a report of which half were left would shift all that follow.
 void discardUnread(int terminal) {
+    constexpr int kHandedOnMs = 10;
     const char* name = ptsname(terminal);
     if (!name) return;
     const int other = ::open(name, O_RDONLY | O_NONBLOCK | O_NOCTTY);
     if (other < 0) return;
     std::array<char, 4096> bytes{};
-    while (::read(other, bytes.data(), bytes.size()) > 0) {
+    pollfd waiting{.fd = other, .events = POLLIN, .revents = 0};
+    while (poll(&waiting, 1, kHandedOnMs) > 0 && ::read(other, bytes.data(), bytes.size()) > 0) {
     }
     ::close(other);
 }
@@ -48,6 +52,7 @@ void HidrawNode::connect() {
     live_.listen([this](const std::vector<std::uint8_t>& report) {
         // A full queue loses the newest, as hidraw does.
         int unread = 0;
+        const std::scoped_lock whole(writing_);
         if (!isOpen() || (ioctl(terminal_, TIOCOUTQ, &unread) == 0 && unread > 3500)) return;
         (void)!::write(terminal_, report.data(), report.size());
     });
@@ -58,7 +63,10 @@ void HidrawNode::pull(bool quietly) {
     MockNode::pull(quietly);
 }
 
-void HidrawNode::firstOpened() { discardUnread(terminal_); }
+void HidrawNode::firstOpened() {
+    const std::scoped_lock whole(writing_);
+    discardUnread(terminal_);
+}
 
 void HidrawNode::opened() {
     live_.with([](sim::FaultyUsb& usb) { usb.reportsOpened(); });

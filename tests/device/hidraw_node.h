@@ -3,6 +3,7 @@
 // input reports are written into its other end while somebody has it open, as a kernel queues them
 // per open file.
 
+#include <mutex>
 #include <string>
 
 #include "sim/live_rig.h"
@@ -31,6 +32,7 @@ private:
 
     sim::LiveRig& live_;
     int terminal_ = -1;
+    std::mutex writing_;  ///< reports go into it whole
 };
 
 }  // namespace gonio::device_test
