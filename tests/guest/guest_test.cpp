@@ -3,7 +3,6 @@
 
 #include <fcntl.h>
 #include <libusb.h>
-#include <sys/fsuid.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -14,6 +13,7 @@
 #include <string>
 #include <thread>
 
+#include "tests/device/without_rights.h"
 #include "tests/guest/guest_rig.h"
 
 namespace gonio::guest_test {
@@ -65,18 +65,6 @@ std::vector<fs::path> nodesOfRig() {
         if (entry.path().filename().string().starts_with("hidraw")) nodes.push_back(entry.path());
     return nodes;
 }
-
-/// This thread, and those it starts, without the right to open what only root may.
-class WithoutRights {
-public:
-    WithoutRights() { setfsuid(kNobody); }
-    ~WithoutRights() { setfsuid(geteuid()); }
-    WithoutRights(const WithoutRights&) = delete;
-    WithoutRights& operator=(const WithoutRights&) = delete;
-
-private:
-    static constexpr uid_t kNobody = 65534;
-};
 
 /// Another process that has the rig open until this ends.
 class Holder {
@@ -252,7 +240,7 @@ TEST_F(GuestRig, WithoutPermissionItNamesTheCureAndOpensOnceThereIsOne) {
         std::this_thread::sleep_for(500ms);
         for (const fs::path& node : nodes) chmod(node.c_str(), 0666);
     });
-    const WithoutRights unprivileged;  // not the thread that began before
+    const device_test::WithoutRights unprivileged;  // not the thread that began before
     const auto refused = driver::openUsb();
     refusedOnce = true;
     ASSERT_FALSE(refused);

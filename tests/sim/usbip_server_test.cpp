@@ -8,7 +8,7 @@
 #include <random>
 
 #include "driver/protocol/chunk.h"
-#include "tests/support/usbip_client.h"
+#include "tests/support/usbip_frame.h"
 #include "tests/support/wait_until.h"
 
 namespace gonio::sim {
@@ -36,29 +36,6 @@ protected:
         server = std::move(*opened);
     }
     [[nodiscard]] int port() const { return server->port(); }
-
-    /// A dark frame of 16 x 8 pixels is on its way to `client`.
-    static void beginFrame(UsbipClient& client) {
-        const auto claim = driver::encode(driver::SessionSet{.sessionId = 7, .heartbeatMs = 10000});
-        client.submit(false,
-                      0,
-                      64,
-                      UsbipClient::setup(0x21, 9, 0x0302, 0, 64),
-                      Bytes(claim.begin(), claim.end()));
-        EXPECT_EQ(client.next(false).status, 0);
-        std::uint16_t sequence = 0;
-        const auto command = [&](driver::Op op, const driver::Arguments& arguments) {
-            const auto report = driver::encode(driver::Command{
-                .sessionLow = 7, .sequence = ++sequence, .op = op, .arguments = arguments});
-            client.submit(false, 1, 64, {}, Bytes(report.begin(), report.end()));
-            EXPECT_EQ(client.next(false).status, 0);
-        };
-        command(
-            driver::Op::SetFormat,
-            driver::encode(driver::SetFormat{
-                .format = driver::PixelFormat::Mono16, .width = 16, .height = 8, .binning = 1}));
-        command(driver::Op::Arm, driver::encode(driver::Arm{.captureId = 1, .frames = 1}));
-    }
 
     LiveRig first{{.serial = "SIM-0001", .errors = {}}};
     LiveRig second{{.serial = "SIM-0002", .errors = {}, .camera = CameraKind::Usb3}};
@@ -97,7 +74,7 @@ TEST_F(UsbipServerTest, AnAttachedRigTellsItsDescriptors) {
 TEST_F(UsbipServerTest, AFrameComesChunkByChunk) {
     UsbipClient client(port());
     ASSERT_EQ(client.import("1-1"), 0U);
-    beginFrame(client);
+    test::beginDarkFrame(client, {16, 8});
     std::vector<driver::ChunkType> types;
     for (int i = 0; i < 3; ++i) {
         client.submit(true, 2, kBuffer);
@@ -132,7 +109,7 @@ TEST_F(UsbipServerTest, AStallEndsATransferUntilTheHaltIsCleared) {
     UsbipClient client(port());
     ASSERT_EQ(client.import("1-1"), 0U);
     first.with([](FaultyUsb& usb) { usb.cause(FaultKind::StallBulk); });
-    beginFrame(client);
+    test::beginDarkFrame(client, {16, 8});
     client.submit(true, 2, kBuffer);
     EXPECT_EQ(client.next(true).status, kPipe);
     client.submit(false, 0, 0, UsbipClient::setup(0x02, 1, 0, 0x82, 0));
@@ -144,7 +121,7 @@ TEST_F(UsbipServerTest, AStallEndsATransferUntilTheHaltIsCleared) {
 TEST_F(UsbipServerTest, ABufferThatEndsInsideAPacketOverflows) {
     UsbipClient client(port());
     ASSERT_EQ(client.import("1-1"), 0U);
-    beginFrame(client);
+    test::beginDarkFrame(client, {16, 8});
     client.submit(true, 2, 100);
     EXPECT_EQ(client.next(true).status, kOverflow);
 }
@@ -172,7 +149,7 @@ TEST_F(UsbipServerTest, AClientThatLeavesHasPulledTheCable) {
     {
         UsbipClient client(port());
         ASSERT_EQ(client.import("1-1"), 0U);
-        beginFrame(client);
+        test::beginDarkFrame(client, {16, 8});
     }
     EXPECT_TRUE(test::waitUntil([&] {
         return first.with([](FaultyUsb& usb) {

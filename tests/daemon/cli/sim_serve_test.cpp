@@ -6,7 +6,7 @@
 #include "driver/protocol/chunk.h"
 #include "driver/protocol/reports.h"
 #include "tests/daemon/cli/documents.h"
-#include "tests/support/usbip_client.h"
+#include "tests/support/usbip_frame.h"
 #include "tests/support/wait_until.h"
 
 namespace gonio::test {
@@ -69,28 +69,6 @@ protected:
     Program gonio;
 };
 
-/// 64 x 48 pixels of whatever lies there, lit by nothing.
-void beginFrame(UsbipClient& client) {
-    const auto claim = driver::encode(driver::SessionSet{.sessionId = 7, .heartbeatMs = 10000});
-    client.submit(false,
-                  0,
-                  64,
-                  UsbipClient::setup(0x21, 9, 0x0302, 0, 64),
-                  Bytes(claim.begin(), claim.end()));
-    EXPECT_EQ(client.next(false).status, 0);
-    std::uint16_t sequence = 0;
-    const auto command = [&](driver::Op op, const driver::Arguments& arguments) {
-        const auto report = driver::encode(driver::Command{
-            .sessionLow = 7, .sequence = ++sequence, .op = op, .arguments = arguments});
-        client.submit(false, 1, 64, {}, Bytes(report.begin(), report.end()));
-        EXPECT_EQ(client.next(false).status, 0);
-    };
-    command(driver::Op::SetFormat,
-            driver::encode(driver::SetFormat{
-                .format = driver::PixelFormat::Mono16, .width = 64, .height = 48, .binning = 1}));
-    command(driver::Op::Arm, driver::encode(driver::Arm{.captureId = 1, .frames = 1}));
-}
-
 TEST_F(SimServe, AClientEnumeratesReadsDescriptorsAndStreamsAFrame) {
     Serving serving(gonio, {"--serial", "LAB-2", "--serial", "LAB-1", "--place", "black"});
     EXPECT_EQ(complaintsOf(serving.document()), "") << serving.document();
@@ -112,7 +90,7 @@ TEST_F(SimServe, AClientEnumeratesReadsDescriptorsAndStreamsAFrame) {
     for (std::size_t i = 2; i < serial.size(); i += 2) text += static_cast<char>(serial[i]);
     EXPECT_EQ(text, "LAB-2");
 
-    beginFrame(client);
+    beginDarkFrame(client, {64, 48});
     std::size_t pixels = 0;
     for (int chunk = 0; chunk < 3; ++chunk) {
         client.submit(true, 2, 257 * 1024);
