@@ -48,8 +48,8 @@ public:
     /// Resets the port, on the stream's own thread; the stream has failed then, for the rig has
     /// lost its link. An error when the port is not reset in a second.
     Result<void> resetPort();
-    /// Asks the thread to end, and waits for it until `deadline`; a thread that is stuck in the
-    /// kernel then keeps this object alive by itself.
+    /// Asks the thread to end, and waits for it until `deadline`; a thread that is not done then
+    /// keeps this object alive by itself, and the rig is Busy until its transfers are back.
     void askToStop();
     void awaitStop(std::chrono::steady_clock::time_point deadline);
 

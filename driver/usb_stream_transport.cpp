@@ -22,6 +22,8 @@ constexpr int kFewest = 2;
 constexpr std::size_t kMost = 64;  // however small the chunks are that a rig says it sends
 constexpr auto kDrainLimit = 500ms;
 constexpr auto kResetLimit = 1s;
+constexpr auto kLeftBehind = 60s;  // then the kernel will not give back what it has
+constexpr auto kPause = 20ms;      // before libusb is asked again after it has failed
 constexpr unsigned kProbeMs = 200;
 
 SteadyTime steadyNow() { return std::chrono::steady_clock::now(); }
@@ -190,7 +192,11 @@ void UsbStream::serve() {
         if (stalled || suspect) recover(stalled);
         if (wanted) doReset();
     }
-    (void)drain();
+    // Whoever closes waits for a second at most. Afterwards, too, all is taken back: as long as
+    // this process has the interface, the rig cannot be opened anew.
+    const SteadyTime limit = steadyNow() + kLeftBehind;
+    while (!drain() && steadyNow() < limit) {
+    }
     std::unique_lock lock(mutex_);
     finished_ = true;
     changed_.notify_all();
@@ -200,9 +206,11 @@ void UsbStream::handleEvents(int milliseconds) {
     timeval wait{.tv_sec = 0, .tv_usec = milliseconds * 1000};
     const int code = libusb_handle_events_timeout_completed(context_.get(), &wait, nullptr);
     if (code == 0 || code == LIBUSB_ERROR_INTERRUPTED) return;
-    std::unique_lock lock(mutex_);
-    fail(usbError(code, "wait for rig " + strings().serial));
-    changed_.wait_for(lock, std::chrono::milliseconds(milliseconds), [&] { return stopping_; });
+    {
+        std::unique_lock lock(mutex_);
+        fail(usbError(code, "wait for rig " + strings().serial));
+    }
+    std::this_thread::sleep_for(std::min(std::chrono::milliseconds(milliseconds), kPause));
 }
 
 void UsbStream::ended(libusb_transfer& transfer) {

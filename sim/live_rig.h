@@ -21,6 +21,7 @@ namespace gonio::sim {
 struct Faults {
     std::atomic<bool> hung{false};         ///< enumerated, and answers nothing
     std::atomic<bool> claimed{false};      ///< another program has the stream interface
+    std::atomic<bool> keepsCancelled{false};  ///< transfers that were cancelled do not come back
     std::atomic<int> mostTransfers{1000};  ///< then the kernel has no memory for another
     std::atomic<int> shorten{0};           ///< transfers that end after half their bytes
     std::atomic<int> overflow{0};          ///< transfers that bring more than their buffer holds
