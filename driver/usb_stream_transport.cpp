@@ -263,7 +263,7 @@ bool UsbStream::drain() {
 /// PROTOCOL.md 4: a stall is cleared; after an error one control request decides.
 void UsbStream::recover(bool stalled) {
     const bool drained = drain();
-    const bool there = stalled || stillThere();
+    const int probe = stalled ? 0 : askWhetherThere();
     const int cleared = stalled ? libusb_clear_halt(rig_.handle.get(), rig_.interfaces.bulkIn) : 0;
     const bool again = limit_.third(steadyNow().time_since_epoch());
     std::unique_lock lock(mutex_);
@@ -271,7 +271,11 @@ void UsbStream::recover(bool stalled) {
     // Those that ended while the others were drained tell nothing new.
     stalled_ = suspect_ = false;
     const std::string name = "rig " + strings().serial;
-    if (!there) return fail(usbError(LIBUSB_ERROR_NO_DEVICE, "read from " + name));
+    if (probe != 0) {
+        // A rig that hangs says nothing until the time is up, and a port reset may help it.
+        gone_ = probe != LIBUSB_ERROR_TIMEOUT;
+        return fail(usbError(LIBUSB_ERROR_NO_DEVICE, "read from " + name));
+    }
     if (!drained) return fail({ErrorKind::Device, name + ": its transfers do not come back"});
     if (cleared != 0) return fail(usbError(cleared, "clear the halt of " + name));
     if (again) return fail(streamFault(name));
@@ -310,16 +314,19 @@ void UsbStream::doResetPort() {
     fail({ErrorKind::Device, name + ": its port was reset"});
 }
 
-bool UsbStream::stillThere() {
+/// 0: it is there.
+int UsbStream::askWhetherThere() {
     std::array<std::uint8_t, 2> status{};
-    return libusb_control_transfer(rig_.handle.get(),
-                                   LIBUSB_ENDPOINT_IN,
-                                   LIBUSB_REQUEST_GET_STATUS,
-                                   0,
-                                   0,
-                                   status.data(),
-                                   static_cast<std::uint16_t>(status.size()),
-                                   kProbeMs) == static_cast<int>(status.size());
+    const int got = libusb_control_transfer(rig_.handle.get(),
+                                            LIBUSB_ENDPOINT_IN,
+                                            LIBUSB_REQUEST_GET_STATUS,
+                                            0,
+                                            0,
+                                            status.data(),
+                                            static_cast<std::uint16_t>(status.size()),
+                                            kProbeMs);
+    if (got == static_cast<int>(status.size())) return 0;
+    return got < 0 ? got : LIBUSB_ERROR_IO;
 }
 
 // ---- with the mutex held

@@ -26,6 +26,7 @@ struct Faults {
     std::atomic<int> shorten{0};           ///< transfers that end after half their bytes
     std::atomic<int> overflow{0};          ///< transfers that bring more than their buffer holds
     std::atomic<int> protocolErrors{0};    ///< transfers that end in an error of the bus
+    std::atomic<int> portResets{0};        ///< counts up: asked for, also of a port without a rig
 };
 
 class LiveRig {

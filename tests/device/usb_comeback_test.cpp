@@ -165,6 +165,9 @@ TEST_F(UsbComeback, UnpluggedInMidBracketTimeAfterTimeNoFrameIsLostAndNothingLea
         EXPECT_EQ(ledger.quarantinedThreads, 0);
         EXPECT_EQ(ledger.hidThreads, 1);
     }
+    // A port that has lost its rig takes a kernel a second to reset, and more: that is asked for
+    // only where the reports tell of the loss before the stream does.
+    EXPECT_LE(mock.faults().portResets, cycles() / 4);
     EXPECT_EQ(ledger.quarantinedTransfers, 0);
     EXPECT_EQ(ledger.streams, 1);
     EXPECT_LE(after.fds, before.fds);

@@ -122,6 +122,7 @@ int UsbfsNode::answer(UMockdevIoctlClient* client) {
         }
         return reap(client, arg);
     }
+    if (request == USBDEVFS_RESET) ++live_.faults.portResets;
     if (gone()) return ENODEV;
     switch (request) {
         case USBDEVFS_GET_CAPABILITIES:
