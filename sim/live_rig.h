@@ -21,10 +21,12 @@ namespace gonio::sim {
 struct Faults {
     std::atomic<bool> hung{false};         ///< enumerated, and answers nothing
     std::atomic<bool> claimed{false};      ///< another program has the stream interface
+    std::atomic<bool> keepsCancelled{false};  ///< transfers that were cancelled do not come back
     std::atomic<int> mostTransfers{1000};  ///< then the kernel has no memory for another
     std::atomic<int> shorten{0};           ///< transfers that end after half their bytes
     std::atomic<int> overflow{0};          ///< transfers that bring more than their buffer holds
     std::atomic<int> protocolErrors{0};    ///< transfers that end in an error of the bus
+    std::atomic<int> portResets{0};        ///< counts up: asked for, also of a port without a rig
 };
 
 class LiveRig {

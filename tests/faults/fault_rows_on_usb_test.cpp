@@ -9,6 +9,7 @@
 #include "tests/faults/measurement.h"
 #include "tests/faults/mocked_rig.h"
 #include "tests/faults/row_seeds.h"
+#include "tests/support/wait_until.h"
 
 namespace gonio::fault_test {
 namespace {
@@ -51,8 +52,10 @@ TEST_P(FaultRowOnUsb, HasTheSameVerdict) {
         figures.add(outcome, bad.empty());
         for (const std::string& complaint : bad)
             ADD_FAILURE() << "seed " << seed << ": " << complaint;
-        EXPECT_EQ(threads(), running) << "seed " << seed;
-        EXPECT_EQ(devices(), opened) << "seed " << seed;
+        // What a busy machine could not end in time ends a little later.
+        EXPECT_TRUE(test::waitUntil([&] { return threads() <= running && devices() <= opened; }))
+            << "seed " << seed << ": " << threads() << " threads, were " << running << "; "
+            << devices() << " devices, were " << opened;
     }
 }
 

@@ -17,7 +17,6 @@ constexpr int kBrackets = 3, kExposures = 3, kFrames = 2;
 constexpr int kTries = 3;             // of a bracket
 constexpr Nanoseconds kLook = 100ms;  // between looks for a lost rig
 constexpr Nanoseconds kGiveUp = 2500ms;
-constexpr int kMostComebacks = 60;
 constexpr Nanoseconds kDark = 2500ms;  // after loss of control
 constexpr Nanoseconds kLongest = 60s;  // of all, whatever happens
 
@@ -32,15 +31,17 @@ CaptureRequest requestOf(int bracket, int exposure) {
 /// Looks for a rig that was lost until it is back, or for so long.
 class Search {
 public:
-    Search(RigDoor& door, Outcome& outcome) : door_(door), outcome_(outcome) {}
+    Search(RigDoor& door, Outcome& outcome, int mostComebacks)
+        : door_(door), outcome_(outcome), left_(mostComebacks) {}
 
     Result<driver::Transport*> operator()(const Error& lost) {
         outcome_.said += lost.message + "\n";
         outcome_.detected = std::max(outcome_.detected, sinceUnseenPull());
-        if (++calls_ > kMostComebacks) return gaveUp("it was lost again and again");
+        if (left_-- == 0) return gaveUp("it was lost again and again");
         for (const Nanoseconds end = door_.now() + kGiveUp; door_.now() < end;) {
             door_.close();
             door_.pause(kLook);
+            door_.with([this](sim::FaultyUsb& usb) { pulls_ = usb.pulls(); });
             auto opened = door_.open();
             if (opened) return opened;
             outcome_.said += opened.error().message + "\n";
@@ -61,7 +62,7 @@ private:
     RigDoor& door_;
     Outcome& outcome_;
     int pulls_ = 0;
-    int calls_ = 0;
+    int left_;
 };
 
 /// Its pictures; empty: it must be redone, for the rig has rebooted.
@@ -126,36 +127,12 @@ void addStats(const driver::Stats& stats, int sign, Outcome& outcome) {
     outcome.counts["replays"] += sign * static_cast<int>(stats.replays);
 }
 
-/// What the driver saw of the rig, and whether it missed an event.
-void readBack(Rig& rig, RigDoor& door, Outcome& outcome) {
-    const auto events = rig.link().takeEvents();
-    if (events) {
-        for (const driver::Event& event : *events) outcome.events.push_back(event.code);
-        for (std::size_t i = 1; i < events->size(); ++i) {
-            if ((*events)[i].sequence != (*events)[i - 1].sequence + 1)
-                ++outcome.counts["eventGaps"];
-        }
-    } else if (outcome.verdict == "completed") {
-        outcome.troubles.push_back("events: " + events.error().message);
+/// Of the script. What other scripts had done before is taken off.
+void addFaults(const sim::FaultTally& tally, int sign, Outcome& outcome) {
+    for (std::size_t i = 0; i < sim::kFaultKinds; ++i) {
+        const auto kind = static_cast<sim::FaultKind>(i);
+        outcome.counts["did " + std::string(sim::faultName(kind))] += sign * tally.of(kind);
     }
-    for (const driver::Interruption& gap : rig.takeInterruptions()) {
-        ++outcome.counts["interruptions"];
-        outcome.counts["resent"] += gap.resent;
-        outcome.counts["redone"] += gap.redone;
-        outcome.counts["otherBoots"] += gap.sameBoot ? 0 : 1;
-    }
-    // Their numbers begin anew with each boot, and are one after the other else.
-    if (outcome.counts["eventGaps"] != outcome.counts["otherBoots"])
-        outcome.troubles.emplace_back("an event was missed, or told twice");
-    outcome.counts["reopens"] += static_cast<int>(rig.link().reopens());
-    count(rig.anomalies(), rig.link().counters(), outcome);
-    door.with([&](sim::FaultyUsb& usb) {
-        addStats(usb.device().stats(), 1, outcome);
-        for (std::size_t i = 0; i < sim::kFaultKinds; ++i) {
-            const auto kind = static_cast<sim::FaultKind>(i);
-            outcome.counts["did " + std::string(sim::faultName(kind))] = usb.tally().of(kind);
-        }
-    });
 }
 
 void judgeError(const Error& error, Outcome& outcome) {
@@ -166,7 +143,8 @@ void judgeError(const Error& error, Outcome& outcome) {
 
 /// The measurement on a rig that could be opened.
 void run(RigDoor& door, const RigSetup& setup, Rig& rig, Outcome& outcome) {
-    rig.onLost(Search(door, outcome));
+    constexpr int kMostComebacks = 60;
+    rig.onLost(comebackThrough(door, outcome, kMostComebacks));
     Result<void> done = rig.configure(setup.window);
     if (done) done = takeAll(rig, outcome);
     outcome.verdict = "completed";
@@ -191,12 +169,53 @@ bool goesDark(RigDoor& door) {
 
 }  // namespace
 
-Outcome measure(RigDoor& door, const RigSetup& setup, const Row& row) {
-    Outcome outcome;
+driver::Comeback comebackThrough(RigDoor& door, Outcome& outcome, int most) {
+    return Search(door, outcome, most);
+}
+
+void beginScript(RigDoor& door, const sim::FaultScript& script, Outcome& outcome) {
     door.with([&](sim::FaultyUsb& usb) {
         addStats(usb.device().stats(), -1, outcome);
-        usb.play(row.script);
+        addFaults(usb.tally(), -1, outcome);
+        usb.play(script);
     });
+}
+
+void noteInterruptions(Rig& rig, Outcome& outcome) {
+    for (const driver::Interruption& gap : rig.takeInterruptions()) {
+        ++outcome.counts["interruptions"];
+        outcome.counts["resent"] += gap.resent;
+        outcome.counts["redone"] += gap.redone;
+        outcome.counts["otherBoots"] += gap.sameBoot ? 0 : 1;
+    }
+}
+
+void readBack(Rig& rig, RigDoor& door, Outcome& outcome) {
+    const auto events = rig.link().takeEvents();
+    if (events) {
+        for (const driver::Event& event : *events) outcome.events.push_back(event.code);
+        for (std::size_t i = 1; i < events->size(); ++i) {
+            if ((*events)[i].sequence != (*events)[i - 1].sequence + 1)
+                ++outcome.counts["eventGaps"];
+        }
+    } else if (outcome.verdict == "completed") {
+        outcome.troubles.push_back("events: " + events.error().message);
+    }
+    noteInterruptions(rig, outcome);
+    // Their numbers begin anew with each boot, and are one after the other else.
+    if (outcome.counts["eventGaps"] != outcome.counts["otherBoots"])
+        outcome.troubles.emplace_back("an event was missed, or told twice");
+    outcome.counts["reopens"] += static_cast<int>(rig.link().reopens());
+    count(rig.anomalies(), rig.link().counters(), outcome);
+    door.with([&](sim::FaultyUsb& usb) {
+        addStats(usb.device().stats(), 1, outcome);
+        addFaults(usb.tally(), 1, outcome);
+    });
+}
+
+Outcome measure(RigDoor& door, const RigSetup& setup, const Row& row) {
+    Outcome outcome;
+    beginScript(door, row.script, outcome);
     const Nanoseconds begin = door.now();
     const auto transport = door.open();
     if (transport) {
