@@ -32,8 +32,10 @@ struct Faults {
 class LiveRig {
 public:
     using Sink = std::function<void(const std::vector<std::uint8_t>& report)>;
+    /// Never goes back; asked by one thread at a time.
+    using Clock = std::function<Nanoseconds()>;
 
-    explicit LiveRig(DeviceConfig config);
+    explicit LiveRig(DeviceConfig config, Clock clock = computersClock);
     ~LiveRig();
     LiveRig(const LiveRig&) = delete;
     LiveRig& operator=(const LiveRig&) = delete;
@@ -62,6 +64,7 @@ public:
     Faults faults;
 
 private:
+    [[nodiscard]] static Nanoseconds computersClock();
     void flushReports();
     void advance();
     void handOn();
@@ -69,6 +72,7 @@ private:
     FaultyUsb usb_;
     std::mutex mutex_;
     Sink sink_;
+    Clock clock_;
     Nanoseconds boot_;
     Nanoseconds skipped_{0};  ///< device time that warming up took
     std::jthread pump_;
