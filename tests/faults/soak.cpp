@@ -4,6 +4,7 @@
 #include <limits>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "tests/faults/measurement.h"
 
@@ -155,6 +156,15 @@ private:
                       {"duplicates and stale", "=", did(outcome_, {FaultKind::DuplicateChunk})}};
         // The last chunk of a capture, come again, is stale: the capture is over.
         row.waived = {"duplicates"};
+        if (plan_.realTime && soaked_.interruptions > soaked_.pulls) {
+            // While the rig is looked for, its reports are nobody's.
+            for (const auto& [counter, cause] :
+                 {std::pair{"unknownReports", FaultKind::UnknownReport},
+                  std::pair{"badReports", FaultKind::SpoilReport}}) {
+                row.waived.emplace_back(counter);
+                row.counts.push_back({counter, "<=", did(outcome_, {cause})});
+            }
+        }
         row.detected = plan_.realTime ? kLoaded * kNoticed : kNoticed;
         return row;
     }

@@ -20,7 +20,8 @@ struct SoakPlan {
     std::string every = "9s..11s";  ///< from a fault to the next, as fault scripts have it
     std::uint64_t seed = 1;
     /// The rig's clock is the computer's. On a busy machine a rig that answers late is lost once
-    /// more, and reports that come late are opened anew: then those two are counted at least.
+    /// more, and reports that come late are opened anew: then those two are counted at least, and
+    /// of reports some pass unseen.
     bool realTime = false;
 };
 

@@ -39,7 +39,10 @@ TEST(SoakOnUsb, LosesNoFrameTakesNoWrongOneAndLeavesNothingBehind) {
     const Holdings before;
     const Soaked soaked = soak(*door, setup, plan);
     // What a busy machine could not end in time ends a little later.
-    (void)test::waitUntil([&] { return Holdings().threads <= before.threads; });
+    (void)test::waitUntil([&] {
+        const Holdings now;
+        return now.threads <= before.threads && now.fds <= before.fds;
+    });
     const Holdings after;
     for (const std::string& trouble : soaked.troubles) ADD_FAILURE() << trouble;
     EXPECT_EQ(soaked.frames, plan.captures * SoakPlan::kFramesPerCapture);
