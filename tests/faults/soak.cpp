@@ -20,6 +20,7 @@ constexpr std::uint64_t kSession = 0x1122334455667788;
 constexpr int kForever = std::numeric_limits<int>::max();
 constexpr Nanoseconds kFeed = 50ms;      // so often is the heartbeat fed between captures
 constexpr Nanoseconds kNoticed = 300ms;  // FAULTS.md F01
+constexpr int kCalm = 2;                 // captures without a fault: the last one is over
 constexpr int kLoaded = 10;              // in real time, on a machine that is busy elsewhere
 
 /// All that a rig survives without a redone bracket, and a loss of power. Frames that are never
@@ -59,14 +60,18 @@ int did(const Outcome& outcome, std::initializer_list<FaultKind> kinds) {
     return sum;
 }
 
+/// Of another fault.
+bool isAnEnd(FaultKind kind) {
+    return kind == FaultKind::Plug || kind == FaultKind::PlugRebooted ||
+           kind == FaultKind::EndLimit;
+}
+
 std::map<std::string, int> allThat(const Outcome& outcome) {
     std::map<std::string, int> kinds;
     for (std::size_t i = 0; i < sim::kFaultKinds; ++i) {
         const auto kind = static_cast<FaultKind>(i);
-        const bool onlyEnds = kind == FaultKind::Plug || kind == FaultKind::PlugRebooted ||
-                              kind == FaultKind::EndLimit;
         const int times = did(outcome, {kind});
-        if (times > 0 && !onlyEnds) kinds.emplace(sim::faultName(kind), times);
+        if (times > 0 && !isAnEnd(kind)) kinds.emplace(sim::faultName(kind), times);
     }
     return kinds;
 }
@@ -83,12 +88,16 @@ public:
         beginScript(door_, scriptOf(plan_), outcome_);
         const Nanoseconds begin = door_.now();
         boot_ = rig.bootId();
-        for (int i = 0; i < plan_.captures && outcome_.troubles.empty(); ++i) {
+        // The planned ones, and a few more, until the last fault is over.
+        int calm = 0;
+        for (int i = 0; (i < plan_.captures || calm < kCalm) && outcome_.troubles.empty(); ++i) {
+            const int before = faultsSoFar();
             take(i, rig, twin);
             while (door_.now() < begin + (i + 1) * SoakPlan::kCapturePeriod) {
                 door_.pause(kFeed);
                 expect(rig.keepAlive(), i);
             }
+            calm = faultsSoFar() == before ? calm + 1 : 0;
         }
         soaked_.lasted = door_.now() - begin;
         judge(rig);
@@ -114,6 +123,16 @@ private:
     void trouble(int capture, const std::string& what) {
         outcome_.troubles.push_back("capture " + std::to_string(capture) + ": " + what);
     }
+    int faultsSoFar() {
+        int sum = 0;
+        door_.with([&](sim::FaultyUsb& usb) {
+            for (std::size_t i = 0; i < sim::kFaultKinds; ++i) {
+                const auto kind = static_cast<FaultKind>(i);
+                if (!isAnEnd(kind)) sum += usb.tally().of(kind);
+            }
+        });
+        return sum;
+    }
     void take(int i, Rig& rig, Rig& twin) {
         const auto wanted = twin.capture(requestOf(i));
         auto seen = rig.capture(requestOf(i));
@@ -122,6 +141,7 @@ private:
             seen = rig.capture(requestOf(i));
         }
         noteInterruptions(rig, outcome_);
+        ++soaked_.captures;
         if (!expect(wanted, i) || !expect(seen, i)) return;
         if (seen->size() != wanted->size()) return trouble(i, "frames are missing");
         for (std::size_t k = 0; k < seen->size(); ++k) {

@@ -26,6 +26,7 @@ struct SoakPlan {
 };
 
 struct Soaked {
+    int captures = 0;                    ///< as planned, and until the last fault is over
     int frames = 0;                      ///< those that are as they should be
     std::map<std::string, int> kinds{};  ///< of fault, and how often each came
     int faults = 0;                      ///< what the script did
