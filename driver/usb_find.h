@@ -62,6 +62,11 @@ struct OpenedRig {
 [[nodiscard]] std::string textIn(std::span<const std::uint8_t> descriptor);
 /// It has the descriptors of a SuperSpeed device, whatever the port gives it.
 [[nodiscard]] bool canSuperSpeed(const OpenedRig& rig);
+/// One control request, answered in 200 ms: 0, or libusb's error; LIBUSB_ERROR_TIMEOUT: it hangs.
+[[nodiscard]] int askWhetherThere(const OpenedRig& rig);
+/// Resets the port of a rig that hangs: it has to be opened anew. False: it does not hang, another
+/// program has it, or that did not help.
+[[nodiscard]] bool resetSilent(const OpenedRig& rig);
 /// Takes the stream interface, from a kernel driver too.
 Result<void> claimStream(const OpenedRig& rig);
 

@@ -205,6 +205,27 @@ bool canSuperSpeed(const OpenedRig& rig) {
     return can;
 }
 
+int askWhetherThere(const OpenedRig& rig) {
+    constexpr unsigned kProbeMs = 200;
+    std::array<std::uint8_t, 2> status{};
+    const int got = libusb_control_transfer(rig.handle.get(),
+                                            LIBUSB_ENDPOINT_IN,
+                                            LIBUSB_REQUEST_GET_STATUS,
+                                            0,
+                                            0,
+                                            status.data(),
+                                            static_cast<std::uint16_t>(status.size()),
+                                            kProbeMs);
+    if (got == static_cast<int>(status.size())) return 0;
+    return got < 0 ? got : LIBUSB_ERROR_IO;
+}
+
+bool resetSilent(const OpenedRig& rig) {
+    if (askWhetherThere(rig) != LIBUSB_ERROR_TIMEOUT || !claimStream(rig)) return false;
+    const int code = libusb_reset_device(rig.handle.get());
+    return code == 0 || code == LIBUSB_ERROR_NOT_FOUND;  // the latter: it shows up anew
+}
+
 Result<void> claimStream(const OpenedRig& rig) {
     // Not supported on a system without kernel drivers to detach: then there is nothing to do.
     (void)libusb_set_auto_detach_kernel_driver(rig.handle.get(), 1);

@@ -1,5 +1,7 @@
 #include "driver/usb_transport.h"
 
+#include <mutex>
+#include <set>
 #include <utility>
 
 #include "driver/hid_channel.h"
@@ -96,9 +98,38 @@ struct Chosen {
     std::string place;
 };
 
+/// Where a rig was silent when it was opened: its port is reset once until it has answered.
+class SilentPlaces {
+public:
+    static bool isNew(const std::string& place) {
+        const std::scoped_lock lock(all().mutex_);
+        return all().places_.insert(place).second;
+    }
+    static void answers(const std::string& place) {
+        const std::scoped_lock lock(all().mutex_);
+        all().places_.erase(place);
+    }
+
+private:
+    static SilentPlaces& all() {
+        static SilentPlaces one;
+        return one;
+    }
+    std::mutex mutex_;
+    std::set<std::string> places_;
+};
+
 Result<Chosen> choose(const FoundRig& found) {
     auto opened = openRig(found);
     if (!opened) return opened.error();
+    if (opened->strings.serial.empty()) {
+        const bool woken = SilentPlaces::isNew(found.rig.place) && resetSilent(*opened);
+        return Error{
+            ErrorKind::Device,
+            "rig at " + found.rig.place + ": its serial number cannot be read; " +
+                (woken ? "its port was reset, open it again" : "check its cable and power")};
+    }
+    SilentPlaces::answers(found.rig.place);
     return Chosen{.opened = std::move(*opened), .place = found.rig.place};
 }
 
@@ -114,12 +145,6 @@ Result<Chosen> bySerial(const std::vector<FoundRig>& rigs, const std::string& se
         }
         const std::string& its = chosen->opened.strings.serial;
         if (its == serial) return chosen;
-        if (its.empty()) {
-            obstacle = Error{ErrorKind::Device,
-                             "rig at " + chosen->place +
-                                 ": its serial number cannot be read; check its cable and power"};
-            continue;
-        }
         others += (others.empty() ? "" : ", ") + its;
     }
     if (obstacle) return *obstacle;

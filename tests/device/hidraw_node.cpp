@@ -46,7 +46,7 @@ int makePipe(UMockdevTestbed* testbed, const std::string& path) {
 }  // namespace
 
 HidrawNode::HidrawNode(sim::LiveRig& live, UMockdevTestbed* testbed, std::string path)
-    : MockNode(testbed, std::move(path)), live_(live) {
+    : MockNode(live, testbed, std::move(path)) {
     g_signal_connect(handler(), "handle-ioctl", G_CALLBACK(onIoctl), this);
     g_signal_connect(handler(), "handle-write", G_CALLBACK(onWrite), this);
 }
@@ -58,7 +58,8 @@ HidrawNode::~HidrawNode() {
 
 void HidrawNode::connect() {
     pipe_ = makePipe(testbed(), path());
-    live_.listen([this](const std::vector<std::uint8_t>& report) {
+    keepsOpen(1);
+    live().listen([this](const std::vector<std::uint8_t>& report) {
         // A full queue loses the newest, as hidraw does.
         int unread = 0;
         const std::scoped_lock whole(writing_);
@@ -69,27 +70,16 @@ void HidrawNode::connect() {
 }
 
 void HidrawNode::pull(bool quietly) {
-    live_.listen({});
+    live().listen({});
     MockNode::pull(quietly);
 }
 
 void HidrawNode::firstOpened() {
-    const std::scoped_lock whole(writing_);
-    discardUnread(pipe_);
-}
-
-void HidrawNode::opened() {
-    live_.with([](sim::FaultyUsb& usb) { usb.reportsOpened(); });
-}
-
-bool HidrawNode::hung() const {
-    return live_.faults.hung || live_.with([](sim::FaultyUsb& usb) { return usb.hung(); });
-}
-
-void HidrawNode::waitWhileHung() const {
-    const auto end = std::chrono::steady_clock::now() + kKernelPatience;
-    while (hung() && !gone() && std::chrono::steady_clock::now() < end)
-        std::this_thread::sleep_for(5ms);
+    {
+        const std::scoped_lock whole(writing_);
+        discardUnread(pipe_);
+    }
+    live().with([](sim::FaultyUsb& usb) { usb.reportsOpened(); });
 }
 
 gboolean HidrawNode::onIoctl(UMockdevIoctlBase*, UMockdevIoctlClient* client, HidrawNode* self) {
@@ -102,11 +92,10 @@ gboolean HidrawNode::onIoctl(UMockdevIoctlBase*, UMockdevIoctlClient* client, Hi
 gboolean HidrawNode::onWrite(UMockdevIoctlBase*, UMockdevIoctlClient* client, HidrawNode* self) {
     const UMockdevIoctlData* arg = umockdev_ioctl_client_get_arg(client);
     const std::span report(arg->data, static_cast<std::size_t>(arg->data_len));
-    self->waitWhileHung();
-    int error = self->gone() ? ENODEV : self->hung() ? ETIMEDOUT : 0;
+    int error = self->waitWhileHung(kKernelPatience);
     if (error == 0) {
         const auto reply =
-            self->live_.with([&](sim::FaultyUsb& usb) { return usb.interruptOut(report); });
+            self->live().with([&](sim::FaultyUsb& usb) { return usb.interruptOut(report); });
         if (reply.answer != sim::UsbAnswer::Done) error = EPIPE;
     }
     umockdev_ioctl_client_complete(client, error == 0 ? arg->data_len : -1, error);
@@ -140,16 +129,14 @@ int HidrawNode::answer(unsigned long request, UMockdevIoctlData* arg) {
 }
 
 int HidrawNode::feature(bool get, std::span<std::uint8_t> report) {
-    waitWhileHung();
-    if (gone()) return -ENODEV;
-    if (hung()) return -ETIMEDOUT;
+    if (const int error = waitWhileHung(kKernelPatience); error != 0) return -error;
     constexpr std::uint16_t kFeature = 3 << 8;
     const sim::UsbSetup setup{.requestType = static_cast<std::uint8_t>(get ? 0xA1 : 0x21),
                               .request = static_cast<std::uint8_t>(get ? 1 : 9),
                               .value = static_cast<std::uint16_t>(kFeature | report[0]),
                               .index = sim::UsbDevice::kHidInterface,
                               .length = static_cast<std::uint16_t>(report.size())};
-    const auto reply = live_.with(
+    const auto reply = live().with(
         [&](sim::FaultyUsb& usb) { return get ? usb.control(setup) : usb.control(setup, report); });
     if (reply.answer != sim::UsbAnswer::Done) return -EPIPE;
     std::copy(reply.data.begin(), reply.data.end(), report.begin());

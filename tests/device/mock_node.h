@@ -10,11 +10,13 @@
 #include <string>
 #include <vector>
 
+#include "sim/live_rig.h"
+
 namespace gonio::device_test {
 
 class MockNode {
 public:
-    MockNode(UMockdevTestbed* testbed, std::string path);
+    MockNode(sim::LiveRig& live, UMockdevTestbed* testbed, std::string path);
     /// Waits until nobody has it open, one second at most.
     virtual ~MockNode();
     MockNode(const MockNode&) = delete;
@@ -31,23 +33,31 @@ protected:
     [[nodiscard]] const std::string& path() const { return path_; }
     [[nodiscard]] bool isOpen();
     [[nodiscard]] bool gone() const { return gone_; }
-    /// Somebody opens it whom nobody came before.
+    [[nodiscard]] sim::LiveRig& live() const { return live_; }
+    /// There, and answering nothing.
+    [[nodiscard]] bool hung() const;
+    /// As a kernel waits for an answer. 0: there is one; or the errno.
+    [[nodiscard]] int waitWhileHung(std::chrono::milliseconds patience) const;
+    /// Somebody opens it that nobody else has open.
     virtual void firstOpened() {}
-    /// Somebody opens it: also one who closed it so lately that it still looks open.
-    virtual void opened() {}
+    /// The test bed itself has the node open so often.
+    void keepsOpen(int files) { ownFiles_ = files; }
     /// A derived class calls it first thing when it ends: no request comes after it.
     void retire();
 
 private:
     void detach();
+    [[nodiscard]] bool isOpenedAlone() const;
     static void onOpen(UMockdevIoctlBase*, UMockdevIoctlClient* client, MockNode* self);
 
+    sim::LiveRig& live_;
     UMockdevTestbed* testbed_;
     std::string path_;
     UMockdevIoctlBase* handler_;
     std::mutex mutex_;
     std::vector<UMockdevIoctlClient*> clients_;  ///< of the files that were open last time
     std::atomic<bool> gone_{false};
+    int ownFiles_ = 0;
     std::chrono::steady_clock::time_point pulledAt_{};
     bool detached_ = false;
 };
