@@ -1,5 +1,7 @@
 #include "sim/faults/report_faults.h"
 
+#include <algorithm>
+
 #include "driver/protocol/crc.h"
 #include "driver/protocol/wire.h"
 
@@ -35,20 +37,24 @@ bool ReportFaults::put(const DueFault& fault, Nanoseconds now) {
         case FaultKind::SpoilReport: ++toSpoil_; return true;
         case FaultKind::UnknownReport: extra_.push_back(unknownReport()); return true;
         case FaultKind::StallReports:
-        case FaultKind::SilenceReports:
-            silentUntil_ =
+        case FaultKind::SilenceReports: {
+            const Nanoseconds end =
                 fault.lasting > Nanoseconds(0) ? now + fault.lasting : Nanoseconds::max();
+            auto& until = fault.kind == FaultKind::StallReports ? stalledUntil_ : silentUntil_;
+            until = std::max(until, end);
             tally_.add(fault.kind);
             return true;
+        }
         default: return false;
     }
 }
 
 std::optional<Report> ReportFaults::next(Device& device) {
     const Nanoseconds now = device.now();
-    while (now < silentUntil_ && device.takeInput()) {
+    const bool quiet = now < silentUntil_ || stalled(now);
+    while (quiet && device.takeInput()) {
     }
-    if (now < silentUntil_) return std::nullopt;
+    if (quiet) return std::nullopt;
     if (!held_.empty() && held_.begin()->first <= now) {
         const Report report = held_.begin()->second;
         held_.erase(held_.begin());

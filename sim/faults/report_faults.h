@@ -25,6 +25,18 @@ public:
     /// Somebody opened the reports anew: what is silent for no certain time speaks again.
     void opened() {
         if (silentUntil_ == Nanoseconds::max()) silentUntil_ = Nanoseconds(0);
+        if (stalledUntil_ == Nanoseconds::max()) stalledUntil_ = Nanoseconds(0);
+    }
+    /// The endpoint stalls.
+    [[nodiscard]] bool stalled(Nanoseconds now) const { return now < stalledUntil_; }
+    void clearHalt() { stalledUntil_ = Nanoseconds(0); }
+    /// The rig has lost its link: what was on its way is lost.
+    void clear() {
+        held_.clear();
+        extra_.clear();
+        delays_.clear();
+        acksToLose_ = toDrop_ = toSpoil_ = 0;
+        clearHalt();
     }
 
 private:
@@ -33,7 +45,7 @@ private:
     std::deque<Nanoseconds> delays_;
     std::multimap<Nanoseconds, driver::Report> held_;
     std::deque<driver::Report> extra_;
-    Nanoseconds silentUntil_{0};
+    Nanoseconds silentUntil_{0}, stalledUntil_{0};
 };
 
 }  // namespace gonio::sim

@@ -117,13 +117,14 @@ void SpoiledAnswers::spoil(const UsbSetup& setup, UsbReply& reply) const {
         }
     }
     if (setup.requestType != 0x80 || setup.request != kGetDescriptor || high != kStringType) return;
-    if (low == kProtocolString)
+    if (low == kProtocolString && (major_ != 1 || minor_ != 0))
         setText(reply, "GRP/" + std::to_string(major_) + "." + std::to_string(minor_));
     for (const Text& text : kTexts) {
         const bool wanted =
             std::find(malformed_.begin(), malformed_.end(), text.name) != malformed_.end();
         if (wanted && text.index == low) setText(reply, text.text);
     }
+    if (reply.data.size() > setup.length) reply.data.resize(setup.length);
 }
 
 }  // namespace gonio::sim
