@@ -31,7 +31,6 @@ private:
     [[nodiscard]] bool hung() const;
     void waitWhileHung() const;
 
-    sim::LiveRig& live_;
     int pipe_ = -1;
     std::mutex writing_;  ///< reports go into it whole
 };
