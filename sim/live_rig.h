@@ -29,6 +29,8 @@ struct Faults {
 
 class LiveRig {
 public:
+    /// Takes a report; an empty one says that their endpoint is stalled, again and again until its
+    /// halt is cleared.
     using Sink = std::function<void(const std::vector<std::uint8_t>& report)>;
 
     explicit LiveRig(DeviceConfig config);

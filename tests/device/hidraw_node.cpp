@@ -50,12 +50,22 @@ HidrawNode::~HidrawNode() { retire(); }
 void HidrawNode::connect() {
     terminal_ = umockdev_testbed_get_dev_fd(testbed(), path().c_str());
     live_.listen([this](const std::vector<std::uint8_t>& report) {
+        if (report.empty()) {
+            halted_ = true;
+            return;
+        }
         // A full queue loses the newest, as hidraw does.
         int unread = 0;
         const std::scoped_lock whole(writing_);
         if (!isOpen() || (ioctl(terminal_, TIOCOUTQ, &unread) == 0 && unread > 3500)) return;
         (void)!::write(terminal_, report.data(), report.size());
     });
+}
+
+void HidrawNode::clearHalt() {
+    constexpr sim::UsbSetup kClear{.requestType = 2, .request = 1, .index = sim::usb::kInterruptIn};
+    if (halted_.exchange(false))
+        live_.with([&](sim::FaultyUsb& usb) { (void)usb.control(kClear); });
 }
 
 void HidrawNode::pull(bool quietly) {

@@ -2,6 +2,7 @@
 
 #include <thread>
 
+#include "driver/usb_ledger.h"
 #include "driver/usb_transport.h"
 #include "tests/device/mock_bus.h"
 
@@ -16,12 +17,18 @@ public:
     }
     Result<driver::Transport*> open() override {
         transport_.reset();
+        rig_.settle();
         auto opened = driver::openUsb();
         if (!opened) return opened.error();
         transport_ = std::move(*opened);
         return transport_.get();
     }
     void close() override { transport_.reset(); }
+    [[nodiscard]] Ring ring() override {
+        const driver::UsbLedger& ledger = driver::usbLedger();
+        return {.allowed = ledger.transfersAllowed, .inFlight = ledger.transfersInFlight};
+    }
+    [[nodiscard]] int slack() const override { return 10; }
     void pause(Nanoseconds time) override { std::this_thread::sleep_for(time); }
     void with(const std::function<void(sim::FaultyUsb&)>& use) override { rig_.live().with(use); }
 
