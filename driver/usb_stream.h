@@ -48,10 +48,11 @@ public:
     /// SET_INTERFACE(stream, 0): drops what has come.
     Result<void> reset();
     /// Resets the port, on the stream's own thread; the stream has failed then, for the rig has
-    /// lost its link. An error when the port is not reset in a second.
+    /// lost its link. An error when the port is not reset in a second, and at once when the rig is
+    /// gone: a kernel may try for seconds to reset a port that nothing is at.
     Result<void> resetPort();
-    /// Asks the thread to end, and waits for it until `deadline`; a thread that is stuck in the
-    /// kernel then keeps this object alive by itself.
+    /// Asks the thread to end, and waits for it until `deadline`; a thread that is not done then
+    /// keeps this object alive by itself, and the rig is Busy until its transfers are back.
     void askToStop();
     void awaitStop(std::chrono::steady_clock::time_point deadline);
 
@@ -81,7 +82,7 @@ private:
     void recover(bool stalled);
     void doReset();
     void doResetPort();
-    [[nodiscard]] bool stillThere();
+    [[nodiscard]] int askWhetherThere();
     // With the mutex held:
     void submitIdle();
     void inFlight(int change);

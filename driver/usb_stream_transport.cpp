@@ -22,6 +22,8 @@ constexpr int kFewest = 2;
 constexpr std::size_t kMost = 64;  // however small the chunks are that a rig says it sends
 constexpr auto kDrainLimit = 500ms;
 constexpr auto kResetLimit = 1s;
+constexpr auto kLeftBehind = 60s;  // then the kernel will not give back what it has
+constexpr auto kPause = 20ms;      // before libusb is asked again after it has failed
 constexpr unsigned kProbeMs = 200;
 
 SteadyTime steadyNow() { return std::chrono::steady_clock::now(); }
@@ -192,7 +194,11 @@ void UsbStream::serve() {
         if (stalled || suspect) recover(stalled);
         if (wanted) doReset();
     }
-    (void)drain();
+    // Whoever closes waits for a second at most. Afterwards, too, all is taken back: as long as
+    // this process has the interface, the rig cannot be opened anew.
+    const SteadyTime limit = steadyNow() + kLeftBehind;
+    while (!drain() && steadyNow() < limit) {
+    }
     std::unique_lock lock(mutex_);
     finished_ = true;
     changed_.notify_all();
@@ -202,9 +208,11 @@ void UsbStream::handleEvents(int milliseconds) {
     timeval wait{.tv_sec = 0, .tv_usec = milliseconds * 1000};
     const int code = libusb_handle_events_timeout_completed(context_.get(), &wait, nullptr);
     if (code == 0 || code == LIBUSB_ERROR_INTERRUPTED) return;
-    std::unique_lock lock(mutex_);
-    fail(usbError(code, "wait for rig " + strings().serial));
-    changed_.wait_for(lock, std::chrono::milliseconds(milliseconds), [&] { return stopping_; });
+    {
+        std::unique_lock lock(mutex_);
+        fail(usbError(code, "wait for rig " + strings().serial));
+    }
+    std::this_thread::sleep_for(std::min(std::chrono::milliseconds(milliseconds), kPause));
 }
 
 void UsbStream::ended(libusb_transfer& transfer) {
@@ -257,7 +265,7 @@ bool UsbStream::drain() {
 /// PROTOCOL.md 4: a stall is cleared; after an error one control request decides.
 void UsbStream::recover(bool stalled) {
     const bool drained = drain();
-    const bool there = stalled || stillThere();
+    const int probe = stalled ? 0 : askWhetherThere();
     const int cleared = stalled ? libusb_clear_halt(rig_.handle.get(), rig_.interfaces.bulkIn) : 0;
     const bool again = limit_.third(steadyNow().time_since_epoch());
     std::unique_lock lock(mutex_);
@@ -265,7 +273,11 @@ void UsbStream::recover(bool stalled) {
     // Those that ended while the others were drained tell nothing new.
     stalled_ = suspect_ = false;
     const std::string name = "rig " + strings().serial;
-    if (!there) return fail(usbError(LIBUSB_ERROR_NO_DEVICE, "read from " + name));
+    if (probe != 0) {
+        // A rig that hangs says nothing until the time is up, and a port reset may help it.
+        gone_ = probe != LIBUSB_ERROR_TIMEOUT;
+        return fail(usbError(LIBUSB_ERROR_NO_DEVICE, "read from " + name));
+    }
     if (!drained) return fail({ErrorKind::Device, name + ": its transfers do not come back"});
     if (cleared != 0) return fail(usbError(cleared, "clear the halt of " + name));
     if (again) return fail(streamFault(name));
@@ -304,16 +316,19 @@ void UsbStream::doResetPort() {
     fail({ErrorKind::Device, name + ": its port was reset"});
 }
 
-bool UsbStream::stillThere() {
+/// 0: it is there.
+int UsbStream::askWhetherThere() {
     std::array<std::uint8_t, 2> status{};
-    return libusb_control_transfer(rig_.handle.get(),
-                                   LIBUSB_ENDPOINT_IN,
-                                   LIBUSB_REQUEST_GET_STATUS,
-                                   0,
-                                   0,
-                                   status.data(),
-                                   static_cast<std::uint16_t>(status.size()),
-                                   kProbeMs) == static_cast<int>(status.size());
+    const int got = libusb_control_transfer(rig_.handle.get(),
+                                            LIBUSB_ENDPOINT_IN,
+                                            LIBUSB_REQUEST_GET_STATUS,
+                                            0,
+                                            0,
+                                            status.data(),
+                                            static_cast<std::uint16_t>(status.size()),
+                                            kProbeMs);
+    if (got == static_cast<int>(status.size())) return 0;
+    return got < 0 ? got : LIBUSB_ERROR_IO;
 }
 
 // ---- with the mutex held

@@ -21,10 +21,12 @@ namespace gonio::sim {
 struct Faults {
     std::atomic<bool> hung{false};         ///< enumerated, and answers nothing
     std::atomic<bool> claimed{false};      ///< another program has the stream interface
+    std::atomic<bool> keepsCancelled{false};  ///< transfers that were cancelled do not come back
     std::atomic<int> mostTransfers{1000};  ///< then the kernel has no memory for another
     std::atomic<int> shorten{0};           ///< transfers that end after half their bytes
     std::atomic<int> overflow{0};          ///< transfers that bring more than their buffer holds
     std::atomic<int> protocolErrors{0};    ///< transfers that end in an error of the bus
+    std::atomic<int> portResets{0};        ///< counts up: asked for, also of a port without a rig
 };
 
 class LiveRig {
@@ -32,8 +34,10 @@ public:
     /// Takes a report; an empty one says that their endpoint is stalled, again and again until its
     /// halt is cleared.
     using Sink = std::function<void(const std::vector<std::uint8_t>& report)>;
+    /// Never goes back; asked by one thread at a time.
+    using Clock = std::function<Nanoseconds()>;
 
-    explicit LiveRig(DeviceConfig config);
+    explicit LiveRig(DeviceConfig config, Clock clock = computersClock);
     ~LiveRig();
     LiveRig(const LiveRig&) = delete;
     LiveRig& operator=(const LiveRig&) = delete;
@@ -62,6 +66,7 @@ public:
     Faults faults;
 
 private:
+    [[nodiscard]] static Nanoseconds computersClock();
     void flushReports();
     void advance();
     void handOn();
@@ -69,6 +74,7 @@ private:
     FaultyUsb usb_;
     std::mutex mutex_;
     Sink sink_;
+    Clock clock_;
     Nanoseconds boot_;
     Nanoseconds skipped_{0};  ///< device time that warming up took
     std::jthread pump_;

@@ -63,6 +63,7 @@ UsbfsNode::~UsbfsNode() {
     const std::scoped_lock lock(mutex_);
     forget(waiting_);
     forget(done_);
+    for (auto& [interface, owner] : claims_) g_object_unref(owner);
 }
 
 void UsbfsNode::forget(std::deque<Urb>& urbs) {
@@ -84,7 +85,8 @@ void UsbfsNode::pull(bool quietly) {
     waiting_.clear();
 }
 
-/// The transfers of a file that was closed are gone with it, as the memory of a killed process is.
+/// The transfers and claims of a file that was closed are gone with it, as the memory of a killed
+/// process is.
 void UsbfsNode::forgetTheDead() {
     for (std::deque<Urb>* urbs : {&waiting_, &done_}) {
         std::erase_if(*urbs, [](const Urb& urb) {
@@ -94,6 +96,11 @@ void UsbfsNode::forgetTheDead() {
             return true;
         });
     }
+    std::erase_if(claims_, [](const auto& claim) {
+        if (umockdev_ioctl_client_get_connected(claim.second)) return false;
+        g_object_unref(claim.second);
+        return true;
+    });
 }
 
 gboolean UsbfsNode::onIoctl(UMockdevIoctlBase*, UMockdevIoctlClient* client, UsbfsNode* self) {
@@ -115,6 +122,7 @@ int UsbfsNode::answer(UMockdevIoctlClient* client) {
         }
         return reap(client, arg);
     }
+    if (request == USBDEVFS_RESET) ++live_.faults.portResets;
     if (gone()) return ENODEV;
     switch (request) {
         case USBDEVFS_GET_CAPABILITIES:
@@ -123,9 +131,11 @@ int UsbfsNode::answer(UMockdevIoctlClient* client) {
                 USBDEVFS_CAP_BULK_SCATTER_GATHER | USBDEVFS_CAP_REAP_AFTER_DISCONNECT;
             return 0;
         case USBDEVFS_GETDRIVER: return ENODATA;  // no kernel driver is bound
-        case USBDEVFS_CLAIMINTERFACE:
-        case USBDEVFS_DISCONNECT_CLAIM: return live_.faults.claimed ? EBUSY : 0;
-        case USBDEVFS_RELEASEINTERFACE: return 0;
+        case USBDEVFS_CLAIMINTERFACE: return claim(client, *resolved<int>(arg));
+        case USBDEVFS_DISCONNECT_CLAIM:
+            return claim(client,
+                         static_cast<int>(resolved<usbdevfs_disconnect_claim>(arg)->interface));
+        case USBDEVFS_RELEASEINTERFACE: return release(client, *resolved<int>(arg));
         case USBDEVFS_SUBMITURB: return submit(client, arg);
         case USBDEVFS_DISCARDURB: return discard(arg);
         case USBDEVFS_SETINTERFACE: return setInterface(arg);
@@ -138,6 +148,22 @@ int UsbfsNode::answer(UMockdevIoctlClient* client) {
         }
         default: return ENOTTY;
     }
+}
+
+int UsbfsNode::claim(UMockdevIoctlClient* client, int interface) {
+    const auto owner = claims_.find(interface);
+    if (live_.faults.claimed || (owner != claims_.end() && owner->second != client)) return EBUSY;
+    if (owner == claims_.end())
+        claims_.emplace(interface, UMOCKDEV_IOCTL_CLIENT(g_object_ref(client)));
+    return 0;
+}
+
+int UsbfsNode::release(UMockdevIoctlClient* client, int interface) {
+    const auto owner = claims_.find(interface);
+    if (owner == claims_.end() || owner->second != client) return EINVAL;
+    g_object_unref(owner->second);
+    claims_.erase(owner);
+    return 0;
 }
 
 int UsbfsNode::setInterface(UMockdevIoctlData* arg) {
@@ -253,8 +279,10 @@ bool UsbfsNode::advanceBulk() {
 }
 
 int UsbfsNode::reap(UMockdevIoctlClient* client, UMockdevIoctlData* arg) {
-    const auto first = std::find_if(
-        done_.begin(), done_.end(), [&](const Urb& urb) { return urb.client == client; });
+    const bool keeps = live_.faults.keepsCancelled;
+    const auto first = std::find_if(done_.begin(), done_.end(), [&](const Urb& urb) {
+        return urb.client == client && !(keeps && urb.status == -ENOENT);
+    });
     if (first == done_.end()) return gone() ? ENODEV : EAGAIN;
     Urb urb = std::move(*first);
     done_.erase(first);

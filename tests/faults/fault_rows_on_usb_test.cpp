@@ -9,6 +9,7 @@
 #include "tests/faults/measurement.h"
 #include "tests/faults/mocked_rig.h"
 #include "tests/faults/row_seeds.h"
+#include "tests/support/wait_until.h"
 
 namespace gonio::fault_test {
 namespace {
@@ -24,7 +25,7 @@ std::size_t devices() {
     for (const auto& file : std::filesystem::directory_iterator("/proc/self/fd")) {
         std::error_code gone;
         const std::string target = std::filesystem::read_symlink(file.path(), gone).string();
-        for (const char* part : {"/dev/bus/usb/", "/dev/pts/", "timerfd"})
+        for (const char* part : {"/dev/bus/usb/", "/dev/hidraw", "timerfd"})
             count += target.find(part) != std::string::npos ? 1U : 0U;
     }
     return count;
@@ -40,8 +41,10 @@ void play(const Row& row, const RigSetup& setup, Figures& figures) {
     const auto bad = complaints(row, outcome, undisturbed(setup));
     figures.add(outcome, bad.empty());
     for (const std::string& complaint : bad) ADD_FAILURE() << seed << ": " << complaint;
-    EXPECT_EQ(threads(), running) << seed;
-    EXPECT_EQ(devices(), opened) << seed;
+    // What a busy machine could not end in time ends a little later.
+    EXPECT_TRUE(test::waitUntil([&] { return threads() <= running && devices() <= opened; }))
+        << seed << ": " << threads() << " threads, were " << running << "; " << devices()
+        << " devices, were " << opened;
 }
 
 class FaultRowOnUsb : public testing::TestWithParam<std::string> {};

@@ -22,7 +22,6 @@ constexpr int kBrackets = 3, kExposures = 3, kFrames = 2;
 constexpr int kTries = 3;             // of a bracket
 constexpr Nanoseconds kLook = 100ms;  // between looks for a lost rig
 constexpr Nanoseconds kGiveUp = 2500ms;
-constexpr int kMostComebacks = 60;
 constexpr Nanoseconds kDark = 2500ms;  // after loss of control
 constexpr Nanoseconds kLongest = 60s;  // of all, whatever happens
 
@@ -103,18 +102,21 @@ private:
 /// Looks for a rig that was lost until it is back, or for so long.
 class Search {
 public:
-    Search(RigDoor& door, CallWatch& calls, Outcome& outcome)
-        : door_(door), watch_(calls), outcome_(outcome) {}
+    /// `calls` may be null.
+    Search(RigDoor& door, CallWatch* calls, Outcome& outcome, int mostComebacks)
+        : door_(door), watch_(calls), outcome_(outcome), left_(mostComebacks) {}
 
     Result<driver::Transport*> operator()(const Error& lost) {
         outcome_.said += lost.message + "\n";
         outcome_.detected = std::max(outcome_.detected, sinceUnseenPull());
-        if (++calls_ > kMostComebacks) return gaveUp("it was lost again and again");
+        if (left_-- == 0) return gaveUp("it was lost again and again");
         for (const Nanoseconds end = door_.now() + kGiveUp; door_.now() < end;) {
             door_.close();
             door_.pause(kLook);
+            door_.with([this](sim::FaultyUsb& usb) { pulls_ = usb.pulls(); });
             auto opened = door_.open();
-            if (opened) return watch_.watch(*opened);
+            if (opened && watch_) return watch_->watch(*opened);
+            if (opened) return opened;
             outcome_.said += opened.error().message + "\n";
         }
         return gaveUp("it did not come back");
@@ -131,10 +133,10 @@ private:
         return since;
     }
     RigDoor& door_;
-    CallWatch& watch_;
+    CallWatch* watch_;
     Outcome& outcome_;
     int pulls_ = 0;
-    int calls_ = 0;
+    int left_;
 };
 
 /// Its pictures; empty: it must be redone, for the rig has rebooted.
@@ -214,46 +216,12 @@ bool asks(const Row& row, const std::string& counter) {
     });
 }
 
-/// What the driver saw of the rig, and whether it missed an event.
-void readBack(Rig& rig, RigDoor& door, Outcome& outcome) {
-    outcome.counts["eventGaps"] += 0;
-    for (const char* name : {"interruptions", "resent", "redone", "otherBoots"})
-        outcome.counts[name] += 0;
-    const auto events = rig.link().takeEvents();
-    if (events) {
-        for (const driver::Event& event : *events) outcome.events.push_back(event.code);
-        outcome.counts["events"] = static_cast<int>(events->size());
-        for (std::size_t i = 1; i < events->size(); ++i) {
-            if ((*events)[i].sequence != (*events)[i - 1].sequence + 1)
-                ++outcome.counts["eventGaps"];
-        }
-    } else if (outcome.verdict == "completed") {
-        outcome.troubles.push_back("events: " + events.error().message);
+/// Of the script. What other scripts had done before is taken off.
+void addFaults(const sim::FaultTally& tally, int sign, Outcome& outcome) {
+    for (std::size_t i = 0; i < sim::kFaultKinds; ++i) {
+        const auto kind = static_cast<sim::FaultKind>(i);
+        outcome.counts["did " + std::string(sim::faultName(kind))] += sign * tally.of(kind);
     }
-    for (const driver::Interruption& gap : rig.takeInterruptions()) {
-        ++outcome.counts["interruptions"];
-        outcome.counts["resent"] += gap.resent;
-        outcome.counts["redone"] += gap.redone;
-        outcome.counts["otherBoots"] += gap.sameBoot ? 0 : 1;
-    }
-    // Their numbers begin anew with each boot, and are one after the other else.
-    if (outcome.counts["eventGaps"] != outcome.counts["otherBoots"])
-        outcome.troubles.emplace_back("an event was missed, or told twice");
-    outcome.counts["reopens"] += static_cast<int>(rig.link().reopens());
-    count(rig.anomalies(), rig.link().counters(), outcome);
-    const RigDoor::Ring ring = door.ring();
-    outcome.counts["ring"] = ring.allowed;
-    outcome.counts["inFlight"] = ring.inFlight;
-    outcome.counts["steps"] = static_cast<int>(outcome.pictures.size());
-    door.with([&](sim::FaultyUsb& usb) {
-        addStats(usb, 1, outcome);
-        outcome.reclaimed = usb.reclaimed();
-        outcome.noticed = usb.reports().noticed();
-        for (std::size_t i = 0; i < sim::kFaultKinds; ++i) {
-            const auto kind = static_cast<sim::FaultKind>(i);
-            outcome.counts["did " + std::string(sim::faultName(kind))] = usb.tally().of(kind);
-        }
-    });
 }
 
 void judgeError(const Error& error, Outcome& outcome) {
@@ -269,8 +237,9 @@ void run(RigDoor& door,
          const Row& row,
          Rig& rig,
          Outcome& outcome) {
+    constexpr int kMostComebacks = 60;
     outcome.counts["bracketsRedone"] = outcome.counts["deviceStatus"] = 0;
-    rig.onLost(Search(door, calls, outcome));
+    rig.onLost(Search(door, &calls, outcome, kMostComebacks));
     Result<void> done = rig.configure(setup.window);
     if (done) done = takeAll(rig, outcome);
     outcome.verdict = "completed";
@@ -299,16 +268,67 @@ bool goesDark(RigDoor& door) {
 
 }  // namespace
 
+driver::Comeback comebackThrough(RigDoor& door, Outcome& outcome, int most) {
+    return Search(door, nullptr, outcome, most);
+}
+
+void beginScript(RigDoor& door, const sim::FaultScript& script, Outcome& outcome) {
+    door.with([&](sim::FaultyUsb& usb) {
+        addStats(usb, -1, outcome);
+        addFaults(usb.tally(), -1, outcome);
+        usb.play(script);
+        outcome.malformed = usb.malformed();
+    });
+}
+
+void noteInterruptions(Rig& rig, Outcome& outcome) {
+    for (const driver::Interruption& gap : rig.takeInterruptions()) {
+        ++outcome.counts["interruptions"];
+        outcome.counts["resent"] += gap.resent;
+        outcome.counts["redone"] += gap.redone;
+        outcome.counts["otherBoots"] += gap.sameBoot ? 0 : 1;
+    }
+}
+
+void readBack(Rig& rig, RigDoor& door, Outcome& outcome) {
+    outcome.counts["eventGaps"] += 0;
+    for (const char* name : {"interruptions", "resent", "redone", "otherBoots"})
+        outcome.counts[name] += 0;
+    const auto events = rig.link().takeEvents();
+    if (events) {
+        for (const driver::Event& event : *events) outcome.events.push_back(event.code);
+        outcome.counts["events"] = static_cast<int>(events->size());
+        for (std::size_t i = 1; i < events->size(); ++i) {
+            if ((*events)[i].sequence != (*events)[i - 1].sequence + 1)
+                ++outcome.counts["eventGaps"];
+        }
+    } else if (outcome.verdict == "completed") {
+        outcome.troubles.push_back("events: " + events.error().message);
+    }
+    noteInterruptions(rig, outcome);
+    // Their numbers begin anew with each boot, and are one after the other else.
+    if (outcome.counts["eventGaps"] != outcome.counts["otherBoots"])
+        outcome.troubles.emplace_back("an event was missed, or told twice");
+    outcome.counts["reopens"] += static_cast<int>(rig.link().reopens());
+    count(rig.anomalies(), rig.link().counters(), outcome);
+    const RigDoor::Ring ring = door.ring();
+    outcome.counts["ring"] = ring.allowed;
+    outcome.counts["inFlight"] = ring.inFlight;
+    outcome.counts["steps"] = static_cast<int>(outcome.pictures.size());
+    door.with([&](sim::FaultyUsb& usb) {
+        addStats(usb, 1, outcome);
+        outcome.reclaimed = usb.reclaimed();
+        outcome.noticed = usb.reports().noticed();
+        addFaults(usb.tally(), 1, outcome);
+    });
+}
+
 Outcome measure(RigDoor& door, const RigSetup& setup, const Row& row) {
     Outcome outcome;
     outcome.slack = door.slack();
     LogCatcher log;
     CallWatch calls;
-    door.with([&](sim::FaultyUsb& usb) {
-        addStats(usb, -1, outcome);
-        usb.play(row.script);
-        outcome.malformed = usb.malformed();
-    });
+    beginScript(door, row.script, outcome);
     const Nanoseconds begin = door.now();
     const auto transport = door.open();
     if (transport) {

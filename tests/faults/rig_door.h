@@ -51,6 +51,7 @@ struct RigSetup {
 
 /// A matt grey, so that every frame has a picture.
 void placeSample(sim::Device& device);
-[[nodiscard]] std::unique_ptr<RigDoor> inProcess(const RigSetup& setup);
+/// The rig is gone for good after so many calls, so that a test ends whatever the driver does.
+[[nodiscard]] std::unique_ptr<RigDoor> inProcess(const RigSetup& setup, int mostCalls = 100'000);
 
 }  // namespace gonio::fault_test
