@@ -34,6 +34,7 @@ struct RigInterfaces {
     int stream = -1;
     std::uint8_t bulkIn = 0;
     std::size_t packet = 0;  ///< bytes of the bulk endpoint
+    bool readable = true;    ///< the configuration descriptor could be read at all
     [[nodiscard]] bool complete() const { return hid >= 0 && stream >= 0 && packet > 0; }
 };
 
@@ -51,22 +52,31 @@ struct OpenedRig {
 
 /// A fresh one each time: without udev an old context never sees what was plugged in later.
 [[nodiscard]] Result<UsbContext> makeUsbContext();
-/// Devices of the wanted ids that have a rig's interfaces, and the wanted serial where it is known.
+/// Devices of the wanted ids, and of the wanted serial where it is known; one that has not a rig's
+/// interfaces has an obstacle that says so, and cannot be opened.
 [[nodiscard]] Result<std::vector<FoundRig>> findRigs(libusb_context* context,
                                                      const UsbSelection& wanted);
 /// Opens and reads the strings; claims nothing yet.
 [[nodiscard]] Result<OpenedRig> openRig(const FoundRig& found);
 /// From descriptors of any origin.
 [[nodiscard]] RigInterfaces interfacesOf(const libusb_config_descriptor& config);
-/// The text of a string descriptor as it came; empty where it is none.
+/// What a rig's descriptors would have and these do not; empty: nothing.
+[[nodiscard]] std::string missingOf(const RigInterfaces& interfaces);
+/// The text of a string descriptor, a blank for each character that is not printable ASCII (which
+/// no serial number may have); empty where it is none.
 [[nodiscard]] std::string textIn(std::span<const std::uint8_t> descriptor);
 /// It has the descriptors of a SuperSpeed device, whatever the port gives it.
 [[nodiscard]] bool canSuperSpeed(const OpenedRig& rig);
-/// One control request, answered in 200 ms: 0, or libusb's error; LIBUSB_ERROR_TIMEOUT: it hangs.
+/// One control request, answered in 200 ms: 0, or libusb's error.
 [[nodiscard]] int askWhetherThere(const OpenedRig& rig);
-/// Resets the port of a rig that hangs: it has to be opened anew. False: it does not hang, another
-/// program has it, or that did not help.
-[[nodiscard]] bool resetSilent(const OpenedRig& rig);
+/// It is there and does not answer that request: it hangs.
+[[nodiscard]] bool isSilent(const OpenedRig& rig);
+/// 0, or libusb's error. The rig has to be opened anew.
+[[nodiscard]] int resetPortOf(const OpenedRig& rig);
+/// Resets the port of a silent rig, once until it has answered. False: that was done, another
+/// program has it, or it did not help.
+[[nodiscard]] bool wake(const OpenedRig& rig);
+void noteAnswer(const OpenedRig& rig);
 /// Takes the stream interface, from a kernel driver too.
 Result<void> claimStream(const OpenedRig& rig);
 

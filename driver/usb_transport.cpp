@@ -1,10 +1,9 @@
 #include "driver/usb_transport.h"
 
-#include <mutex>
-#include <set>
 #include <utility>
 
 #include "driver/hid_channel.h"
+#include "driver/identity.h"
 #include "driver/protocol/reports.h"
 #include "driver/steady_clock.h"
 #include "driver/usb_find.h"
@@ -98,38 +97,17 @@ struct Chosen {
     std::string place;
 };
 
-/// Where a rig was silent when it was opened: its port is reset once until it has answered.
-class SilentPlaces {
-public:
-    static bool isNew(const std::string& place) {
-        const std::scoped_lock lock(all().mutex_);
-        return all().places_.insert(place).second;
-    }
-    static void answers(const std::string& place) {
-        const std::scoped_lock lock(all().mutex_);
-        all().places_.erase(place);
-    }
-
-private:
-    static SilentPlaces& all() {
-        static SilentPlaces one;
-        return one;
-    }
-    std::mutex mutex_;
-    std::set<std::string> places_;
-};
-
 Result<Chosen> choose(const FoundRig& found) {
     auto opened = openRig(found);
     if (!opened) return opened.error();
-    if (opened->strings.serial.empty()) {
-        const bool woken = SilentPlaces::isNew(found.rig.place) && resetSilent(*opened);
+    if (opened->strings.serial.empty() && isSilent(*opened)) {
+        const bool woken = wake(*opened);
         return Error{
             ErrorKind::Device,
-            "rig at " + found.rig.place + ": its serial number cannot be read; " +
+            "rig at " + found.rig.place + " does not answer; " +
                 (woken ? "its port was reset, open it again" : "check its cable and power")};
     }
-    SilentPlaces::answers(found.rig.place);
+    noteAnswer(*opened);
     return Chosen{.opened = std::move(*opened), .place = found.rig.place};
 }
 
@@ -145,10 +123,39 @@ Result<Chosen> bySerial(const std::vector<FoundRig>& rigs, const std::string& se
         }
         const std::string& its = chosen->opened.strings.serial;
         if (its == serial) return chosen;
+        if (its.empty()) {
+            obstacle = Error{ErrorKind::Device,
+                             "rig at " + chosen->place +
+                                 ": its serial number cannot be read; check its cable and power"};
+            continue;
+        }
         others += (others.empty() ? "" : ", ") + its;
     }
     if (obstacle) return *obstacle;
     return Error{ErrorKind::NoRig, "rig " + serial + " is not there, rig " + others + " is"};
+}
+
+/// Nobody has asked for it by its serial number, so that it may have none.
+Result<Chosen> theOnlyOne(const FoundRig& rig) {
+    auto chosen = choose(rig);
+    if (!chosen) return chosen;
+    if (auto sound = checkSerial(chosen->opened.strings); !sound)
+        return sound.error().in("USB device " + chosen->place);
+    return chosen;
+}
+
+/// Those that may be rigs; an error that says why there is none.
+Result<std::vector<FoundRig>> soundOnes(std::vector<FoundRig> rigs) {
+    std::string obstacle;
+    for (const FoundRig& found : rigs) {
+        if (!found.interfaces.complete())
+            obstacle = "USB device " + found.rig.place + " (" +
+                       idText(found.rig.vendor, found.rig.product) +
+                       ") is no rig: " + found.rig.obstacle + "; install a rig's firmware";
+    }
+    std::erase_if(rigs, [](const FoundRig& found) { return !found.interfaces.complete(); });
+    if (rigs.empty() && !obstacle.empty()) return Error{ErrorKind::NoRig, obstacle};
+    return rigs;
 }
 
 Result<Chosen> theOne(const std::vector<FoundRig>& rigs, const UsbSelection& wanted) {
@@ -159,7 +166,7 @@ Result<Chosen> theOne(const std::vector<FoundRig>& rigs, const UsbSelection& wan
                          "with USB id " + ids + " is there; is it plugged in and powered?"};
     }
     if (wanted.serial) return bySerial(rigs, *wanted.serial);
-    if (rigs.size() == 1) return choose(rigs.front());
+    if (rigs.size() == 1) return theOnlyOne(rigs.front());
     std::string names;
     for (const FoundRig& found : rigs) names += " " + found.rig.serial;
     return Error{ErrorKind::Usage,
@@ -200,7 +207,7 @@ Result<std::vector<UsbRig>> listUsb(const UsbSelection& wanted) {
     std::vector<UsbRig> rigs;
     for (const FoundRig& one : *found) {
         rigs.push_back(one.rig);
-        inspect(one, rigs.back());
+        if (one.interfaces.complete()) inspect(one, rigs.back());
     }
     return rigs;
 }
@@ -208,7 +215,9 @@ Result<std::vector<UsbRig>> listUsb(const UsbSelection& wanted) {
 Result<std::unique_ptr<Transport>> openUsb(const UsbSelection& wanted) {
     auto context = makeUsbContext();
     if (!context) return context.error();
-    auto rigs = findRigs(context->get(), wanted);
+    auto found = findRigs(context->get(), wanted);
+    if (!found) return found.error();
+    auto rigs = soundOnes(std::move(*found));
     if (!rigs) return rigs.error();
     auto chosen = theOne(*rigs, wanted);
     if (!chosen) return chosen.error();

@@ -136,6 +136,8 @@ void FaultyUsb::apply(const DueFault& fault) {
         return;
     }
     if (applyToRig(fault) || answers_.put(fault)) tally_.add(fault.kind);
+    // A host reads descriptors when a device is plugged in, and no more.
+    if (fault.kind == FaultKind::Malform && malformsDescriptors(fault.name)) plugIn({});
 }
 
 /// False: the fault is another's business.
@@ -175,6 +177,7 @@ bool FaultyUsb::applyToRig(const DueFault& fault) {
             device().sendUnknownChunk();
             return true;
         case FaultKind::UnknownEvent: device().tellUnknownEvent(); return true;
+        case FaultKind::PileUpReports: device().pileUpReports(fault.count); return true;
         case FaultKind::OpenInterlock: device().setInterlock(0); return true;
         case FaultKind::CloseInterlock:
             endsAt_.erase(fault.kind);
@@ -195,6 +198,18 @@ bool FaultyUsb::applyToRig(const DueFault& fault) {
         }
         default: return false;
     }
+}
+
+std::vector<std::uint8_t> FaultyUsb::deviceDescriptor() {
+    auto descriptor = usb().deviceDescriptor();
+    answers_.spoilDevice(descriptor);
+    return descriptor;
+}
+
+std::vector<std::uint8_t> FaultyUsb::configDescriptor() {
+    auto descriptors = usb().configDescriptor();
+    answers_.spoilConfig(descriptors);
+    return descriptors;
 }
 
 FrameFlaw FaultyUsb::flawOfExposure() {
@@ -225,6 +240,7 @@ void FaultyUsb::unplug(bool quietly) {
     endsAt_.erase(FaultKind::EndHang);
     ++pulls_;
     pulledAt_ = now();
+    backSince_.reset();
     chunks_.clear();
     reports_.clear();
     if (!stranger_) usb_.reset(UsbDevice::Loss::Power);
@@ -234,10 +250,11 @@ void FaultyUsb::unplug(bool quietly) {
 void FaultyUsb::plugIn(const std::string& otherSerial) {
     unplug();
     plugged_ = true;
-    reports_.opened();
+    reports_.plugged();
     if (otherSerial.empty()) {
         endsAt_.erase(FaultKind::Plug);
         if (std::exchange(powerLost_, false)) device().powerCycle();
+        backSince_ = now();
         return;
     }
     DeviceConfig other = config_;
@@ -249,13 +266,14 @@ void FaultyUsb::plugIn(const std::string& otherSerial) {
 
 void FaultyUsb::resetPort() {
     if (!plugged_) return;
+    ++portResets_;
     if (hungUntilReset_) {
         hung_ = hungUntilReset_ = false;
         endsAt_.erase(FaultKind::EndHang);
     }
     chunks_.clear();
     reports_.clear();
-    reports_.opened();
+    reports_.plugged();
     usb().reset();
 }
 
@@ -263,33 +281,40 @@ void FaultyUsb::resetPort() {
 
 UsbReply FaultyUsb::control(const UsbSetup& setup, std::span<const std::uint8_t> out) {
     constexpr std::uint8_t kSetReport = 9, kOutput = 2, kToInterface = 0x21;
+    constexpr std::uint8_t kClearFeature = 1, kOfEndpoint = 0x02;
+    constexpr std::uint8_t kGetStatus = 0, kStatusOfEndpoint = 0x82;
+    constexpr std::uint8_t kFromDevice = 0x80, kGetDescriptor = 6, kDeviceType = 1, kConfigType = 2;
     if (!plugged_) return without(UsbAnswer::Gone);
     if (hung_) return without(UsbAnswer::Nak);
     if (setup.requestType == kToInterface && setup.request == kSetReport &&
         setup.value >> 8 == kOutput && out.size() == driver::kReportBytes)
         return interruptOut(out);
+    if (setup.requestType == kOfEndpoint && setup.request == kClearFeature &&
+        setup.index == usb::kInterruptIn)
+        reports_.haltCleared(now());
     UsbReply reply = usb().control(setup, out);
-    if (setup.index == usb::kInterruptIn) ofReports(setup, reply);
+    if (setup.requestType == kStatusOfEndpoint && setup.request == kGetStatus &&
+        setup.index == usb::kInterruptIn && !reply.data.empty())
+        reply.data.front() = reports_.stalled() ? 1 : 0;
+    if (backSince_ && device().claimed()) {
+        reclaimed_ = std::max(reclaimed_, now() - *backSince_);
+        backSince_.reset();
+    }
     answers_.spoil(setup, reply);
+    if (setup.requestType != kFromDevice || setup.request != kGetDescriptor) return reply;
+    if (setup.value == kDeviceType << 8) reply.data = deviceDescriptor();
+    if (setup.value == kConfigType << 8) reply.data = configDescriptor();
+    reply.data.resize(std::min<std::size_t>(reply.data.size(), setup.length));
     return reply;
-}
-
-/// The halt of their endpoint.
-void FaultyUsb::ofReports(const UsbSetup& setup, UsbReply& reply) {
-    constexpr std::uint8_t kGetOfEndpoint = 0x82, kSetOfEndpoint = 0x02;
-    constexpr std::uint8_t kGetStatus = 0, kClearFeature = 1;
-    if (setup.requestType == kGetOfEndpoint && setup.request == kGetStatus && !reply.data.empty())
-        reply.data.front() = reportsStalled() ? 1 : 0;
-    if (setup.requestType == kSetOfEndpoint && setup.request == kClearFeature && setup.value == 0)
-        reports_.clearHalt();
 }
 
 UsbReply FaultyUsb::interruptIn() {
     if (!plugged_) return without(UsbAnswer::Gone);
     if (hung_) return without(UsbAnswer::Nak);
     if (stranger_) return stranger_->interruptIn();
+    if (reports_.stalled()) return without(UsbAnswer::Stall);
     const auto report = reports_.next(device());
-    if (!report) return without(reportsStalled() ? UsbAnswer::Stall : UsbAnswer::Nak);
+    if (!report) return without(UsbAnswer::Nak);
     return {.answer = UsbAnswer::Done, .data = {report->begin(), report->end()}};
 }
 

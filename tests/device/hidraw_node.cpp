@@ -22,6 +22,7 @@ using namespace std::chrono_literals;
 // seconds, but serves other nodes meanwhile; here one thread serves them all.)
 constexpr auto kKernelPatience = 1200ms;
 
+const sim::UsbReply kRefused{.answer = sim::UsbAnswer::Stall, .data = {}};
 constexpr int kReportsKept = 63;  // by hidraw for each open file: the oldest
 
 /// What nobody has read must not meet the next one who opens the node.
@@ -60,6 +61,10 @@ void HidrawNode::connect() {
     pipe_ = makePipe(testbed(), path());
     keepsOpen(1);
     live().listen([this](const std::vector<std::uint8_t>& report) {
+        if (report.empty()) {
+            halted_ = true;
+            return;
+        }
         // A full queue loses the newest, as hidraw does.
         int unread = 0;
         const std::scoped_lock whole(writing_);
@@ -67,6 +72,12 @@ void HidrawNode::connect() {
         if (!isOpen() || ioctl(pipe_, FIONREAD, &unread) != 0 || unread >= most) return;
         (void)!::write(pipe_, report.data(), report.size());
     });
+}
+
+void HidrawNode::clearHalt() {
+    constexpr sim::UsbSetup kClear{.requestType = 2, .request = 1, .index = sim::usb::kInterruptIn};
+    if (halted_.exchange(false))
+        live().with([&](sim::FaultyUsb& usb) { (void)usb.control(kClear); });
 }
 
 void HidrawNode::pull(bool quietly) {
@@ -94,8 +105,9 @@ gboolean HidrawNode::onWrite(UMockdevIoctlBase*, UMockdevIoctlClient* client, Hi
     const std::span report(arg->data, static_cast<std::size_t>(arg->data_len));
     int error = self->waitWhileHung(kKernelPatience);
     if (error == 0) {
-        const auto reply =
-            self->live().with([&](sim::FaultyUsb& usb) { return usb.interruptOut(report); });
+        const auto reply = self->live().with([&](sim::FaultyUsb& usb) {
+            return self->isAnothers(usb) ? kRefused : usb.interruptOut(report);
+        });
         if (reply.answer != sim::UsbAnswer::Done) error = EPIPE;
     }
     umockdev_ioctl_client_complete(client, error == 0 ? arg->data_len : -1, error);
@@ -136,8 +148,10 @@ int HidrawNode::feature(bool get, std::span<std::uint8_t> report) {
                               .value = static_cast<std::uint16_t>(kFeature | report[0]),
                               .index = sim::UsbDevice::kHidInterface,
                               .length = static_cast<std::uint16_t>(report.size())};
-    const auto reply = live().with(
-        [&](sim::FaultyUsb& usb) { return get ? usb.control(setup) : usb.control(setup, report); });
+    const auto reply = live().with([&](sim::FaultyUsb& usb) {
+        if (isAnothers(usb)) return kRefused;
+        return get ? usb.control(setup) : usb.control(setup, report);
+    });
     if (reply.answer != sim::UsbAnswer::Done) return -EPIPE;
     std::copy(reply.data.begin(), reply.data.end(), report.begin());
     return get ? static_cast<int>(reply.data.size()) : static_cast<int>(report.size());

@@ -38,6 +38,10 @@ protected:
     [[nodiscard]] bool hung() const;
     /// As a kernel waits for an answer. 0: there is one; or the errno.
     [[nodiscard]] int waitWhileHung(std::chrono::milliseconds patience) const;
+    /// Another rig is at the plug by now, or this one again: its node is another.
+    [[nodiscard]] bool isAnothers(const sim::FaultyUsb& usb) const {
+        return usb.plugged() && usb.pulls() != pulls_;
+    }
     /// Somebody opens it that nobody else has open.
     virtual void firstOpened() {}
     /// The test bed itself has the node open so often.
@@ -51,6 +55,7 @@ private:
     static void onOpen(UMockdevIoctlBase*, UMockdevIoctlClient* client, MockNode* self);
 
     sim::LiveRig& live_;
+    int pulls_;  ///< of the cable when it was made
     UMockdevTestbed* testbed_;
     std::string path_;
     UMockdevIoctlBase* handler_;

@@ -293,15 +293,5 @@ TEST_F(UsbRigTest, ARigThatIsSilentWhenItIsOpenedGetsItsPortReset) {
     EXPECT_TRUE(awake) << awake.error().message;
 }
 
-TEST_F(UsbRigTest, OneRigWithoutASerialNumberIsToldAsSuch) {
-    mock.live().with([](sim::FaultyUsb& usb) {
-        usb.cause({.kind = sim::FaultKind::Malform, .name = "serial-empty"});
-    });
-    const auto nameless = driver::openUsb();
-    ASSERT_FALSE(nameless);
-    EXPECT_NE(nameless.error().message.find("serial number cannot be read"), std::string::npos)
-        << nameless.error().message;
-}
-
 }  // namespace
 }  // namespace gonio::device_test

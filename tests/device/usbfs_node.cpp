@@ -52,6 +52,8 @@ int statusOf(sim::UsbAnswer answer) {
     }
 }
 
+const sim::UsbReply kNothing{.answer = sim::UsbAnswer::Nak, .data = {}};
+
 bool takeOne(std::atomic<int>& counter) {
     if (counter <= 0) return false;
     --counter;
@@ -181,7 +183,10 @@ int UsbfsNode::release(UMockdevIoctlClient* client, int interface) {
 int UsbfsNode::request(const sim::UsbSetup& setup, std::unique_lock<std::mutex>& lock) {
     lock.unlock();
     if (const int error = waitWhileHung(kKernelPatience); error != 0) return error;
-    const auto reply = live().with([&](sim::FaultyUsb& usb) { return usb.control(setup); });
+    const auto reply = live().with([&](sim::FaultyUsb& usb) {
+        return isAnothers(usb) ? sim::UsbReply{.answer = sim::UsbAnswer::Gone, .data = {}}
+                               : usb.control(setup);
+    });
     switch (reply.answer) {
         case sim::UsbAnswer::Done: return 0;
         case sim::UsbAnswer::Nak: return ETIMEDOUT;  // it hangs since this moment
@@ -234,8 +239,9 @@ bool UsbfsNode::runControl(Urb& urb) {
                               .value = word(2),
                               .index = word(4),
                               .length = word(6)};
-    urb.reply =
-        live().with([&](sim::FaultyUsb& usb) { return usb.control(setup, bytes.subspan(kSetup)); });
+    urb.reply = live().with([&](sim::FaultyUsb& usb) {
+        return isAnothers(usb) ? kNothing : usb.control(setup, bytes.subspan(kSetup));
+    });
     if (urb.reply.answer == sim::UsbAnswer::Nak) return false;
     if (urb.reply.answer != sim::UsbAnswer::Done) urb.status = statusOf(urb.reply.answer);
     const std::size_t moved = std::min(urb.reply.data.size(), bytes.size() - kSetup);
@@ -273,7 +279,7 @@ void UsbfsNode::sendInstead(std::deque<sim::UsbReply> transfers) {
 }
 
 sim::UsbReply UsbfsNode::nextForeign() {
-    if (foreign_->empty()) return {.answer = sim::UsbAnswer::Nak, .data = {}};
+    if (foreign_->empty()) return kNothing;
     sim::UsbReply reply = std::move(foreign_->front());
     foreign_->pop_front();
     return reply;
@@ -287,6 +293,7 @@ bool UsbfsNode::advanceBulk() {
     bool wholePackets = true;
     urb.reply = live().with([&](sim::FaultyUsb& usb) {
         wholePackets = length % usb.bulkPacket() == 0;
+        if (isAnothers(usb)) return kNothing;
         return foreign_ ? nextForeign() : usb.bulkIn(length);
     });
     if (urb.reply.answer == sim::UsbAnswer::Nak) return false;

