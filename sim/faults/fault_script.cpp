@@ -205,7 +205,7 @@ Result<Fault> readFault(Words& words) {
         rest = at;
         fault = std::move(*found);
     }
-    if (!best) return wanted("what goes wrong, such as \"lose chunk\" or \"unplug for 1s\"", words);
+    if (!best) return wanted(R"(what goes wrong, such as "lose chunk" or "unplug for 1s")", words);
     if (fault.kind == FaultKind::Malform && !isMalformation(fault.name))
         return Error{ErrorKind::File,
                      "malform " + fault.name + ", wanted one of " + malformations()};
