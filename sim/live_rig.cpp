@@ -34,6 +34,7 @@ void LiveRig::advance() { usb_.advanceTo(clock_() - boot_ + skipped_); }
 void LiveRig::listen(Sink sink) {
     const std::scoped_lock lock(mutex_);
     sink_ = std::move(sink);
+    listenedAfter_ = usb_.pulls();
 }
 
 void LiveRig::flushReports() {
@@ -47,7 +48,7 @@ void LiveRig::handOn() {
         const UsbReply reply = usb_.interruptIn();
         if (reply.answer == UsbAnswer::Stall && sink_ && !faults.hung) sink_({});
         if (reply.answer != UsbAnswer::Done) return;
-        if (sink_ && !faults.hung) sink_(reply.data);
+        if (sink_ && !faults.hung && usb_.pulls() == listenedAfter_) sink_(reply.data);
     }
 }
 

@@ -22,6 +22,7 @@ using namespace std::chrono_literals;
 // seconds, but serves other nodes meanwhile; here one thread serves them all.)
 constexpr auto kKernelPatience = 1200ms;
 
+const sim::UsbReply kRefused{.answer = sim::UsbAnswer::Stall, .data = {}};
 constexpr int kReportsKept = 63;  // by hidraw for each open file: the oldest
 
 /// What nobody has read must not meet the next one who opens the node.
@@ -46,7 +47,7 @@ int makePipe(UMockdevTestbed* testbed, const std::string& path) {
 }  // namespace
 
 HidrawNode::HidrawNode(sim::LiveRig& live, UMockdevTestbed* testbed, std::string path)
-    : MockNode(testbed, std::move(path)), live_(live) {
+    : MockNode(live, testbed, std::move(path)) {
     g_signal_connect(handler(), "handle-ioctl", G_CALLBACK(onIoctl), this);
     g_signal_connect(handler(), "handle-write", G_CALLBACK(onWrite), this);
 }
@@ -58,7 +59,7 @@ HidrawNode::~HidrawNode() {
 
 void HidrawNode::connect() {
     pipe_ = makePipe(testbed(), path());
-    live_.listen([this](const std::vector<std::uint8_t>& report) {
+    live().listen([this](const std::vector<std::uint8_t>& report) {
         if (report.empty()) {
             halted_ = true;
             return;
@@ -75,11 +76,11 @@ void HidrawNode::connect() {
 void HidrawNode::clearHalt() {
     constexpr sim::UsbSetup kClear{.requestType = 2, .request = 1, .index = sim::usb::kInterruptIn};
     if (halted_.exchange(false))
-        live_.with([&](sim::FaultyUsb& usb) { (void)usb.control(kClear); });
+        live().with([&](sim::FaultyUsb& usb) { (void)usb.control(kClear); });
 }
 
 void HidrawNode::pull(bool quietly) {
-    live_.listen({});
+    live().listen({});
     MockNode::pull(quietly);
 }
 
@@ -89,11 +90,11 @@ void HidrawNode::firstOpened() {
 }
 
 void HidrawNode::opened() {
-    live_.with([](sim::FaultyUsb& usb) { usb.reportsOpened(); });
+    live().with([](sim::FaultyUsb& usb) { usb.reportsOpened(); });
 }
 
 bool HidrawNode::hung() const {
-    return live_.faults.hung || live_.with([](sim::FaultyUsb& usb) { return usb.hung(); });
+    return live().faults.hung || live().with([](sim::FaultyUsb& usb) { return usb.hung(); });
 }
 
 void HidrawNode::waitWhileHung() const {
@@ -115,8 +116,9 @@ gboolean HidrawNode::onWrite(UMockdevIoctlBase*, UMockdevIoctlClient* client, Hi
     self->waitWhileHung();
     int error = self->gone() ? ENODEV : self->hung() ? ETIMEDOUT : 0;
     if (error == 0) {
-        const auto reply =
-            self->live_.with([&](sim::FaultyUsb& usb) { return usb.interruptOut(report); });
+        const auto reply = self->live().with([&](sim::FaultyUsb& usb) {
+            return self->isAnothers(usb) ? kRefused : usb.interruptOut(report);
+        });
         if (reply.answer != sim::UsbAnswer::Done) error = EPIPE;
     }
     umockdev_ioctl_client_complete(client, error == 0 ? arg->data_len : -1, error);
@@ -159,8 +161,10 @@ int HidrawNode::feature(bool get, std::span<std::uint8_t> report) {
                               .value = static_cast<std::uint16_t>(kFeature | report[0]),
                               .index = sim::UsbDevice::kHidInterface,
                               .length = static_cast<std::uint16_t>(report.size())};
-    const auto reply = live_.with(
-        [&](sim::FaultyUsb& usb) { return get ? usb.control(setup) : usb.control(setup, report); });
+    const auto reply = live().with([&](sim::FaultyUsb& usb) {
+        if (isAnothers(usb)) return kRefused;
+        return get ? usb.control(setup) : usb.control(setup, report);
+    });
     if (reply.answer != sim::UsbAnswer::Done) return -EPIPE;
     std::copy(reply.data.begin(), reply.data.end(), report.begin());
     return get ? static_cast<int>(reply.data.size()) : static_cast<int>(report.size());

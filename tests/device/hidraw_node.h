@@ -34,7 +34,6 @@ private:
     [[nodiscard]] bool hung() const;
     void waitWhileHung() const;
 
-    sim::LiveRig& live_;
     int pipe_ = -1;
     std::atomic<bool> halted_{false};
     std::mutex writing_;  ///< reports go into it whole

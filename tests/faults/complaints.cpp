@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <initializer_list>
+#include <vector>
 
 #include "tests/faults/measurement.h"
 
@@ -14,7 +14,7 @@ using sim::FaultKind;
 /// What the driver counts exactly of what was done to its stream.
 struct Law {
     const char* counter;
-    std::initializer_list<FaultKind> causes;
+    std::vector<FaultKind> causes;
 };
 const std::array kLaws{
     Law{"emptyTransfers", {FaultKind::EmptyPacket}},
