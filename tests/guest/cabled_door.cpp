@@ -12,20 +12,21 @@ namespace {
 
 class CabledDoor : public fault_test::RigDoor {
 public:
-    explicit CabledDoor(const fault_test::RigSetup& setup) : live_(setup.config) {
+    explicit CabledDoor(const fault_test::RigSetup& setup)
+        : wanted_{.serial = setup.config.serial}, live_(setup.config) {
         live_.with([](sim::FaultyUsb& usb) { fault_test::placeSample(usb.device()); });
         live_.warmUp(setup.window);
         auto attached = sim::VhciCable::attach(live_);
         if (!attached) throw std::runtime_error(attached.error().message);
         cable_ = std::move(*attached);
         // The kernel makes the nodes one after the other.
-        (void)test::waitUntil([] { return driver::openUsb().has_value(); });
+        (void)test::waitUntil([&] { return driver::openUsb(wanted_).has_value(); });
     }
     ~CabledDoor() override {
         transport_.reset();
         cable_.reset();
-        (void)test::waitUntil([] {
-            const auto rigs = driver::listUsb();
+        (void)test::waitUntil([&] {
+            const auto rigs = driver::listUsb(wanted_);
             return rigs && rigs->empty();
         });
     }
@@ -34,7 +35,7 @@ public:
 
     Result<driver::Transport*> open() override {
         transport_.reset();
-        auto opened = driver::openUsb();
+        auto opened = driver::openUsb(wanted_);
         if (!opened) return opened.error();
         transport_ = std::move(*opened);
         return transport_.get();
@@ -44,6 +45,7 @@ public:
     void with(const std::function<void(sim::FaultyUsb&)>& use) override { live_.with(use); }
 
 private:
+    driver::UsbSelection wanted_;  // the daemon has a rig beside it
     sim::LiveRig live_;
     std::unique_ptr<sim::VhciCable> cable_;
     std::unique_ptr<driver::Transport> transport_;
