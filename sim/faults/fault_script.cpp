@@ -223,7 +223,7 @@ Result<Fault> readFault(Words& words) {
         rest = at;
         fault = std::move(*found);
     }
-    if (!best) return wanted("what goes wrong, such as \"lose chunk\" or \"unplug for 1s\"", words);
+    if (!best) return wanted(R"(what goes wrong, such as "lose chunk" or "unplug for 1s")", words);
     if (auto sound = checkAmounts(*best, fault); !sound) return sound.error();
     words = rest;
     if (best->lasts && words.take("for")) {

@@ -65,7 +65,7 @@ void FaultyUsb::play(FaultScript script) {
     while (auto due = player_.timed(now())) apply(*due);
 }
 
-void FaultyUsb::cause(DueFault fault) { apply(fault); }
+void FaultyUsb::cause(const DueFault& fault) { apply(fault); }
 
 // ---- time
 

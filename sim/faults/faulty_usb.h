@@ -25,7 +25,7 @@ public:
     /// The script's time begins now. What an earlier one has begun goes on.
     void play(FaultScript script);
     /// Now, whatever the script says.
-    void cause(DueFault fault);
+    void cause(const DueFault& fault);
     void cause(FaultKind kind) { cause(DueFault{.kind = kind}); }
 
     // Time is the rig's own.
