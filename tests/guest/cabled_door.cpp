@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "driver/usb_ledger.h"
 #include "driver/usb_transport.h"
 #include "sim/vhci_cable.h"
 #include "tests/support/wait_until.h"
@@ -41,6 +42,11 @@ public:
         return transport_.get();
     }
     void close() override { transport_.reset(); }
+    [[nodiscard]] Ring ring() override {
+        const driver::UsbLedger& ledger = driver::usbLedger();
+        return {.allowed = ledger.transfersAllowed, .inFlight = ledger.transfersInFlight};
+    }
+    [[nodiscard]] int slack() const override { return 10; }  // an emulated machine
     void pause(Nanoseconds time) override { std::this_thread::sleep_for(time); }
     void with(const std::function<void(sim::FaultyUsb&)>& use) override { live_.with(use); }
 
