@@ -1,6 +1,8 @@
 #pragma once
 // The bulk stream of an opened rig: a ring of transfers in flight and the thread that serves it.
 // The ring holds at most 2 MiB; when the system refuses memory it is halved, down to two transfers.
+// With memory for none it tries again, and has failed after kMemoryLimit (protocol/fault_limit.h);
+// at the start it has failed at once.
 // Nothing is allocated after start(). A transfer that nobody has read, or that the reader still
 // looks at, is not in flight: a slow reader holds the rig back and loses nothing.
 // STALL: all transfers are drained, the halt is cleared, and the stream goes on; OVERFLOW: that
@@ -46,10 +48,11 @@ public:
     /// SET_INTERFACE(stream, 0): drops what has come.
     Result<void> reset();
     /// Resets the port, on the stream's own thread; the stream has failed then, for the rig has
-    /// lost its link. An error when the port is not reset in a second.
+    /// lost its link. An error when the port is not reset in a second, and at once when the rig is
+    /// gone: a kernel may try for seconds to reset a port that nothing is at.
     Result<void> resetPort();
-    /// Asks the thread to end, and waits for it until `deadline`; a thread that is stuck in the
-    /// kernel then keeps this object alive by itself.
+    /// Asks the thread to end, and waits for it until `deadline`; a thread that is not done then
+    /// keeps this object alive by itself, and the rig is Busy until its transfers are back.
     void askToStop();
     void awaitStop(std::chrono::steady_clock::time_point deadline);
 
@@ -79,13 +82,13 @@ private:
     void recover(bool stalled);
     void doReset();
     void doResetPort();
-    [[nodiscard]] bool stillThere();
+    [[nodiscard]] int askWhetherThere();
     // With the mutex held:
     void submitIdle();
     void inFlight(int change);
     void takeBackLent();
     void shrink();
-    [[nodiscard]] std::string memoryHint() const;
+    void setRing(int transfers);
     void fail(Error error);
     [[nodiscard]] int busy() const;
 
@@ -100,6 +103,7 @@ private:
     std::optional<std::size_t> lent_;  ///< the slot whose bytes the reader has
     StreamCounters counters_;
     int inFlight_ = 0;
+    std::optional<std::chrono::steady_clock::time_point> starvedSince_;  ///< no memory for any
     bool holding_ = true;  ///< nothing is submitted: before start, while draining, after the end
     bool stalled_ = false, suspect_ = false, resetWanted_ = false;
     bool stopping_ = false, finished_ = false, warned_ = false;

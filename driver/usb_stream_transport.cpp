@@ -22,6 +22,8 @@ constexpr int kFewest = 2;
 constexpr std::size_t kMost = 64;  // however small the chunks are that a rig says it sends
 constexpr auto kDrainLimit = 500ms;
 constexpr auto kResetLimit = 1s;
+constexpr auto kLeftBehind = 60s;  // then the kernel will not give back what it has
+constexpr auto kPause = 20ms;      // before libusb is asked again after it has failed
 constexpr unsigned kProbeMs = 200;
 
 SteadyTime steadyNow() { return std::chrono::steady_clock::now(); }
@@ -45,6 +47,7 @@ UsbStream::UsbStream(UsbContext context, OpenedRig rig)
 
 UsbStream::~UsbStream() {
     --usbLedger().streams;
+    usbLedger().transfersAllowed -= counters_.ring;
     if (inFlight_ > 0) {
         usbLedger().transfersInFlight -= inFlight_;
         usbLedger().quarantinedTransfers += inFlight_;
@@ -76,10 +79,10 @@ Result<void> UsbStream::start(std::size_t maxChunkPayload) {
                                   0);
     }
     std::unique_lock lock(mutex_);
-    counters_.ring = static_cast<int>(slots_.size());
+    setRing(static_cast<int>(slots_.size()));
     holding_ = false;
     submitIdle();
-    if (inFlight_ == 0 && !failure_) fail({ErrorKind::Device, memoryHint()});
+    if (starvedSince_) fail({ErrorKind::Device, memoryHint("rig " + strings().serial, 0)});
     // Also after a failure: what was submitted must be taken back.
     thread_ = std::thread([self = shared_from_this()] { self->serve(); });
     if (failure_) return *failure_;
@@ -186,11 +189,16 @@ void UsbStream::serve() {
             continue;
         }
         if (failure_) continue;
+        if (starvedSince_) submitIdle();
         lock.unlock();
         if (stalled || suspect) recover(stalled);
         if (wanted) doReset();
     }
-    (void)drain();
+    // Whoever closes waits for a second at most. Afterwards, too, all is taken back: as long as
+    // this process has the interface, the rig cannot be opened anew.
+    const SteadyTime limit = steadyNow() + kLeftBehind;
+    while (!drain() && steadyNow() < limit) {
+    }
     std::unique_lock lock(mutex_);
     finished_ = true;
     changed_.notify_all();
@@ -200,9 +208,11 @@ void UsbStream::handleEvents(int milliseconds) {
     timeval wait{.tv_sec = 0, .tv_usec = milliseconds * 1000};
     const int code = libusb_handle_events_timeout_completed(context_.get(), &wait, nullptr);
     if (code == 0 || code == LIBUSB_ERROR_INTERRUPTED) return;
-    std::unique_lock lock(mutex_);
-    fail(usbError(code, "wait for rig " + strings().serial));
-    changed_.wait_for(lock, std::chrono::milliseconds(milliseconds), [&] { return stopping_; });
+    {
+        std::unique_lock lock(mutex_);
+        fail(usbError(code, "wait for rig " + strings().serial));
+    }
+    std::this_thread::sleep_for(std::min(std::chrono::milliseconds(milliseconds), kPause));
 }
 
 void UsbStream::ended(libusb_transfer& transfer) {
@@ -255,7 +265,7 @@ bool UsbStream::drain() {
 /// PROTOCOL.md 4: a stall is cleared; after an error one control request decides.
 void UsbStream::recover(bool stalled) {
     const bool drained = drain();
-    const bool there = stalled || stillThere();
+    const int probe = stalled ? 0 : askWhetherThere();
     const int cleared = stalled ? libusb_clear_halt(rig_.handle.get(), rig_.interfaces.bulkIn) : 0;
     const bool again = limit_.third(steadyNow().time_since_epoch());
     std::unique_lock lock(mutex_);
@@ -263,7 +273,11 @@ void UsbStream::recover(bool stalled) {
     // Those that ended while the others were drained tell nothing new.
     stalled_ = suspect_ = false;
     const std::string name = "rig " + strings().serial;
-    if (!there) return fail(usbError(LIBUSB_ERROR_NO_DEVICE, "read from " + name));
+    if (probe != 0) {
+        // A rig that hangs says nothing until the time is up, and a port reset may help it.
+        gone_ = probe != LIBUSB_ERROR_TIMEOUT;
+        return fail(usbError(LIBUSB_ERROR_NO_DEVICE, "read from " + name));
+    }
     if (!drained) return fail({ErrorKind::Device, name + ": its transfers do not come back"});
     if (cleared != 0) return fail(usbError(cleared, "clear the halt of " + name));
     if (again) return fail(streamFault(name));
@@ -302,16 +316,19 @@ void UsbStream::doResetPort() {
     fail({ErrorKind::Device, name + ": its port was reset"});
 }
 
-bool UsbStream::stillThere() {
+/// 0: it is there.
+int UsbStream::askWhetherThere() {
     std::array<std::uint8_t, 2> status{};
-    return libusb_control_transfer(rig_.handle.get(),
-                                   LIBUSB_ENDPOINT_IN,
-                                   LIBUSB_REQUEST_GET_STATUS,
-                                   0,
-                                   0,
-                                   status.data(),
-                                   static_cast<std::uint16_t>(status.size()),
-                                   kProbeMs) == static_cast<int>(status.size());
+    const int got = libusb_control_transfer(rig_.handle.get(),
+                                            LIBUSB_ENDPOINT_IN,
+                                            LIBUSB_REQUEST_GET_STATUS,
+                                            0,
+                                            0,
+                                            status.data(),
+                                            static_cast<std::uint16_t>(status.size()),
+                                            kProbeMs);
+    if (got == static_cast<int>(status.size())) return 0;
+    return got < 0 ? got : LIBUSB_ERROR_IO;
 }
 
 // ---- with the mutex held
@@ -338,6 +355,7 @@ void UsbStream::submitIdle() {
         if (code == 0) {
             slot.place = Place::InFlight;
             inFlight(1);
+            starvedSince_.reset();
         } else if (code == LIBUSB_ERROR_NO_MEM) {
             return shrink();
         } else if (code == LIBUSB_ERROR_NO_DEVICE) {
@@ -352,14 +370,18 @@ void UsbStream::submitIdle() {
 
 /// What is in flight stays so: the ring shrinks as transfers end.
 void UsbStream::shrink() {
-    counters_.ring = std::max(kFewest, counters_.ring / 2);
-    if (!std::exchange(warned_, true)) log::warning(memoryHint());
+    setRing(std::max(kFewest, counters_.ring / 2));
+    const std::string name = "rig " + strings().serial;
+    if (!std::exchange(warned_, true)) log::warning(memoryHint(name, counters_.ring));
+    if (busy() > 0) return;
+    if (!starvedSince_) starvedSince_ = steadyNow();
+    if (steadyNow() - *starvedSince_ >= kMemoryLimit)
+        fail({ErrorKind::Device, memoryHint(name, 0)});
 }
 
-std::string UsbStream::memoryHint() const {
-    return "rig " + strings().serial + ": the system has no memory for more USB transfers, " +
-           std::to_string(counters_.ring) +
-           " are kept; write a larger number into /sys/module/usbcore/parameters/usbfs_memory_mb";
+void UsbStream::setRing(int transfers) {
+    usbLedger().transfersAllowed += transfers - counters_.ring;
+    counters_.ring = transfers;
 }
 
 void UsbStream::fail(Error error) {

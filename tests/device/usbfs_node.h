@@ -5,6 +5,7 @@
 // which poll() always finds ready).
 
 #include <deque>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -38,6 +39,8 @@ private:
     int discard(UMockdevIoctlData* arg);
     int reap(UMockdevIoctlClient* client, UMockdevIoctlData* arg);
     int setInterface(UMockdevIoctlData* arg);
+    int claim(UMockdevIoctlClient* client, int interface);
+    int release(UMockdevIoctlClient* client, int interface);
     [[nodiscard]] int mostTransfers();
     bool runControl(Urb& urb);
     [[nodiscard]] bool advanceBulk();
@@ -45,9 +48,9 @@ private:
     static void forget(std::deque<Urb>& urbs);
     void forgetTheDead();
 
-    sim::LiveRig& live_;
     std::mutex mutex_;
     std::deque<Urb> waiting_, done_;
+    std::map<int, UMockdevIoctlClient*> claims_;  ///< who has an interface
     std::optional<std::deque<sim::UsbReply>> foreign_;
 };
 

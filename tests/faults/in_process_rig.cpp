@@ -5,11 +5,11 @@
 namespace gonio::fault_test {
 namespace {
 
-/// Ends what would never end: after so many calls the rig is gone for good.
+/// Ends what would never end: after its last call the rig is gone for good.
 class Patience : public driver::Transport {
 public:
-    Patience(std::unique_ptr<sim::InProcessDoor> door, int& calls)
-        : door_(std::move(door)), calls_(calls) {}
+    Patience(std::unique_ptr<sim::InProcessDoor> door, int& callsLeft)
+        : door_(std::move(door)), callsLeft_(callsLeft) {}
     [[nodiscard]] driver::DeviceStrings strings() const override { return door_->strings(); }
     [[nodiscard]] const Clock& clock() const override { return door_->clock(); }
     Result<void> write(const driver::Report& report) override {
@@ -35,34 +35,40 @@ public:
     Result<void> resetStream() override { return door_->resetStream(); }
     Result<void> reopenReports() override { return door_->reopenReports(); }
     Result<void> resetPort() override { return door_->resetPort(); }
+    [[nodiscard]] const sim::InProcessDoor::Counters& counters() const { return door_->counters(); }
 
 private:
-    static constexpr int kMostCalls = 100'000;
-    bool over() { return ++calls_ > kMostCalls; }
+    bool over() { return callsLeft_ == 0 || --callsLeft_ == 0; }
     static Error end() { return {ErrorKind::Device, "the test's patience is at its end"}; }
 
     std::unique_ptr<sim::InProcessDoor> door_;
-    int& calls_;  ///< of all doors to this rig
+    int& callsLeft_;  ///< of all doors to this rig
 };
 
 class InProcessRig : public RigDoor {
 public:
-    explicit InProcessRig(const RigSetup& setup) : first_(setup.config) {
+    InProcessRig(const RigSetup& setup, int mostCalls)
+        : first_(setup.config), callsLeft_(mostCalls) {
         placeSample(first_.device());
     }
     Result<driver::Transport*> open() override {
         auto door = first_.openAgain();
         if (!door) return door.error();
-        door_ = std::make_unique<Patience>(std::move(*door), calls_);
+        door_ = std::make_unique<Patience>(std::move(*door), callsLeft_);
         return door_.get();
     }
     void close() override { door_.reset(); }
+    [[nodiscard]] Ring ring() override {
+        if (!door_) return {};
+        return {.allowed = door_->counters().ring, .inFlight = door_->counters().inFlight};
+    }
+    [[nodiscard]] int slack() const override { return 1; }
     void pause(Nanoseconds time) override { first_.usb().advanceTo(first_.usb().now() + time); }
     void with(const std::function<void(sim::FaultyUsb&)>& use) override { use(first_.usb()); }
 
 private:
     sim::InProcessDoor first_;  ///< keeps the rig; nobody uses it
-    int calls_ = 0;
+    int callsLeft_;
     std::unique_ptr<Patience> door_;
 };
 
@@ -74,8 +80,8 @@ void placeSample(sim::Device& device) {
                   .wedge = {}});
 }
 
-std::unique_ptr<RigDoor> inProcess(const RigSetup& setup) {
-    return std::make_unique<InProcessRig>(setup);
+std::unique_ptr<RigDoor> inProcess(const RigSetup& setup, int mostCalls) {
+    return std::make_unique<InProcessRig>(setup, mostCalls);
 }
 
 }  // namespace gonio::fault_test

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "driver/rig.h"
 #include "tests/faults/rig_door.h"
 #include "tests/faults/row.h"
 
@@ -22,12 +23,30 @@ struct Outcome {
     std::map<std::string, int> counts;
     std::vector<int> events;            ///< their codes
     std::vector<std::string> troubles;  ///< what no row may show
-    Nanoseconds detected{0};            ///< the longest
+    std::vector<std::string> malformed;
+    Nanoseconds detected{0};     ///< the longest; likewise those that follow
+    Nanoseconds reclaimed{0};    ///< from the plug to the claim
+    Nanoseconds noticed{0};      ///< from silent reports to their opening
+    Nanoseconds longestCall{0};  ///< of the transport, beyond what it was to wait
+    int slack = 1;               ///< how many times a limit may last
 };
 
 [[nodiscard]] Outcome measure(RigDoor& door, const RigSetup& setup, const Row& row);
 /// Of a rig that nothing disturbs.
 [[nodiscard]] const Pictures& undisturbed(const RigSetup& setup);
+
+// Its parts, for measurements of another shape.
+
+/// The script's time begins; what the rig and other scripts did before is not counted.
+void beginScript(RigDoor& door, const sim::FaultScript& script, Outcome& outcome);
+/// Looks for a lost rig until it is back, for 2.5 s each time, so many times. Says in the outcome
+/// what it was told. Both are borrowed.
+[[nodiscard]] driver::Comeback comebackThrough(RigDoor& door, Outcome& outcome, int most);
+/// Times that it was lost since they were last noted.
+void noteInterruptions(driver::Rig& rig, Outcome& outcome);
+/// What the driver saw of the rig since it was opened and what the script did since it began, kind
+/// by kind, and whether an event was missed.
+void readBack(driver::Rig& rig, RigDoor& door, Outcome& outcome);
 
 /// What is not as the row wants it; empty: it has passed.
 [[nodiscard]] std::vector<std::string> complaints(const Row& row,

@@ -2,8 +2,10 @@
 
 #include <thread>
 
+#include "driver/usb_ledger.h"
 #include "driver/usb_transport.h"
 #include "tests/device/mock_bus.h"
+#include "tests/support/wait_until.h"
 
 namespace gonio::fault_test {
 namespace {
@@ -15,13 +17,29 @@ public:
         rig_.live().warmUp(setup.window);
     }
     Result<driver::Transport*> open() override {
-        transport_.reset();
+        close();
+        rig_.settle();
+        const std::scoped_lock lock(bus_.listeners());
         auto opened = driver::openUsb();
         if (!opened) return opened.error();
         transport_ = std::move(*opened);
         return transport_.get();
     }
-    void close() override { transport_.reset(); }
+    void close() override {
+        {
+            const std::scoped_lock lock(bus_.listeners());
+            transport_.reset();
+        }
+        // On a busy machine closing may take longer than the driver waits for it.
+        const auto& ledger = driver::usbLedger();
+        (void)test::waitUntil([&] { return ledger.streams == 0 && ledger.hidThreads == 0; });
+        rig_.forgetPulled();
+    }
+    [[nodiscard]] Ring ring() override {
+        const driver::UsbLedger& ledger = driver::usbLedger();
+        return {.allowed = ledger.transfersAllowed, .inFlight = ledger.transfersInFlight};
+    }
+    [[nodiscard]] int slack() const override { return 10; }
     void pause(Nanoseconds time) override { std::this_thread::sleep_for(time); }
     void with(const std::function<void(sim::FaultyUsb&)>& use) override { rig_.live().with(use); }
 
