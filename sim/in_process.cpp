@@ -19,7 +19,6 @@ constexpr int kFewestTransfers = 2;
 // Requests: USB 2.0, chapter 9, and HID 1.11.
 constexpr UsbSetup kGetStatus{.requestType = 0x80, .request = 0, .length = 2};
 constexpr UsbSetup kClearHalt{.requestType = 0x02, .request = 1, .index = usb::kBulkIn};
-constexpr UsbSetup kFlush{.requestType = 0x01, .request = 11, .index = UsbDevice::kStreamInterface};
 
 UsbSetup featureRequest(bool get, std::uint8_t id) {
     constexpr std::uint16_t kFeature = 3 << 8;
@@ -207,12 +206,6 @@ Result<void> InProcessDoor::fitRing() {
     if (most == 0) return fail("gets no memory for USB transfers: raise usbfs_memory_mb");
     while (counters_.ring > std::max(most, kFewestTransfers))
         counters_.ring = std::max(kFewestTransfers, counters_.ring / 2);
-    return {};
-}
-
-Result<void> InProcessDoor::resetStream() {
-    const auto done = request("flush", [&] { return usb_->control(kFlush); });
-    if (!done) return done.error();
     return {};
 }
 
