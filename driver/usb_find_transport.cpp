@@ -91,7 +91,9 @@ RigInterfaces interfacesOf(const libusb_config_descriptor& config) {
             main.bInterfaceSubClass != kStreamSubClass ||
             main.bInterfaceProtocol != kStreamProtocol)
             continue;
-        for (int e = 0; e < main.bNumEndpoints; ++e) {
+        // Of an interface whose descriptors end too soon libusb has no endpoints, whatever it
+        // counts.
+        for (int e = 0; main.endpoint != nullptr && e < main.bNumEndpoints; ++e) {
             const libusb_endpoint_descriptor& endpoint = main.endpoint[e];
             const bool in = (endpoint.bEndpointAddress & LIBUSB_ENDPOINT_IN) != 0;
             if (!in || (endpoint.bmAttributes & 3) != LIBUSB_TRANSFER_TYPE_BULK) continue;

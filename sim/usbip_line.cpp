@@ -192,7 +192,8 @@ std::optional<UsbipLine::Outcome> UsbipLine::outcome(Queue queue, const Submit& 
 }
 
 Result<void> UsbipLine::end(const Submit& submit, Outcome outcome) {
-    auto& [status, data] = outcome;
+    int& status = outcome.status;
+    usbip::Bytes& data = outcome.data;
     if (submit.in && data.size() > submit.length) {
         status = -EOVERFLOW;
         data.clear();

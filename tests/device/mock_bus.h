@@ -6,6 +6,7 @@
 #include <deque>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
@@ -19,6 +20,9 @@ namespace gonio::device_test {
 class HidrawNode;
 class MockNode;
 class UsbfsNode;
+
+/// As descriptions of devices have bytes: "0A1F".
+[[nodiscard]] std::string hex(std::span<const std::uint8_t> bytes);
 
 class MockBus {
 public:
