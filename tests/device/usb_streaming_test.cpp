@@ -73,7 +73,6 @@ TEST_F(UsbStreaming, CopiesEachByteOnceFromTheTransferToTheFrame) {
 
 TEST_F(UsbStreaming, ASlowReaderHoldsTheRigBackAndLosesNothing) {
     constexpr int kFrames = 30;
-    ASSERT_TRUE(rig->configure({.x = 256, .y = 256, .size = {512, 512}, .binning = 1}));
     const auto made = [&] {
         std::uint32_t frames = 0;
         mock.live().with([&](sim::FaultyUsb& usb) { frames = usb.device().stats().framesMade; });
@@ -92,7 +91,7 @@ TEST_F(UsbStreaming, ASlowReaderHoldsTheRigBackAndLosesNothing) {
     });
     ASSERT_TRUE(capture) << capture.error().message;
     EXPECT_EQ(given, kFrames);
-    EXPECT_LT(madeMeanwhile, kFrames) << "the ring holds 5 of them, the rig 8";
+    EXPECT_LT(madeMeanwhile, kFrames) << "the ring holds 2 or 3 of them, the rig 8";
     EXPECT_EQ(made() - before, kFrames) << "none was exposed twice";
     EXPECT_EQ(capture->anomalies, driver::Anomalies{});
     EXPECT_EQ(capture->resends, 0);
