@@ -46,6 +46,7 @@ void LiveRig::flushReports() {
 void LiveRig::handOn() {
     while (true) {
         const UsbReply reply = usb_.interruptIn();
+        if (reply.answer == UsbAnswer::Stall && sink_ && !faults.hung) sink_({});
         if (reply.answer != UsbAnswer::Done) return;
         if (sink_ && !faults.hung && usb_.pulls() == listenedAfter_) sink_(reply.data);
     }

@@ -31,6 +31,8 @@ struct Faults {
 
 class LiveRig {
 public:
+    /// Takes a report; an empty one says that their endpoint is stalled, again and again until its
+    /// halt is cleared.
     using Sink = std::function<void(const std::vector<std::uint8_t>& report)>;
     /// Never goes back; asked by one thread at a time.
     using Clock = std::function<Nanoseconds()>;

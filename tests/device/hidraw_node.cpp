@@ -60,6 +60,10 @@ HidrawNode::~HidrawNode() {
 void HidrawNode::connect() {
     pipe_ = makePipe(testbed(), path());
     live().listen([this](const std::vector<std::uint8_t>& report) {
+        if (report.empty()) {
+            halted_ = true;
+            return;
+        }
         // A full queue loses the newest, as hidraw does.
         int unread = 0;
         const std::scoped_lock whole(writing_);
@@ -67,6 +71,12 @@ void HidrawNode::connect() {
         if (!isOpen() || ioctl(pipe_, FIONREAD, &unread) != 0 || unread >= most) return;
         (void)!::write(pipe_, report.data(), report.size());
     });
+}
+
+void HidrawNode::clearHalt() {
+    constexpr sim::UsbSetup kClear{.requestType = 2, .request = 1, .index = sim::usb::kInterruptIn};
+    if (halted_.exchange(false))
+        live().with([&](sim::FaultyUsb& usb) { (void)usb.control(kClear); });
 }
 
 void HidrawNode::pull(bool quietly) {

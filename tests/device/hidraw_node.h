@@ -4,6 +4,7 @@
 // once 64 are unread): input reports are written into it while somebody has it open, as a kernel
 // queues them per open file.
 
+#include <atomic>
 #include <mutex>
 #include <string>
 
@@ -19,6 +20,8 @@ public:
     /// Call once the test bed has the node.
     void connect();
     void pull(bool quietly) override;
+    /// As usbhid does: the halt of a stalled endpoint is cleared. Not from within the rig.
+    void clearHalt();
 
 private:
     void firstOpened() override;
@@ -32,6 +35,7 @@ private:
     void waitWhileHung() const;
 
     int pipe_ = -1;
+    std::atomic<bool> halted_{false};
     std::mutex writing_;  ///< reports go into it whole
 };
 

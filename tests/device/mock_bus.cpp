@@ -141,6 +141,7 @@ void MockRig::watchTheCable() {
     });
     if (usbfs_ && (!plugged || pulls != pulls_)) takeDown(quietly);
     if (!usbfs_ && plugged) putUp();
+    if (hidraw_) hidraw_->clearHalt();
     for (const auto& node : pulled_) node->settle();
 }
 

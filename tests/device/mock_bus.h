@@ -56,6 +56,8 @@ public:
     void unplug();
     /// The stream brings these transfers and then none, whatever the rig has.
     void sendInstead(std::deque<sim::UsbReply> transfers);
+    /// What a script has done to the cable by now has happened to the nodes.
+    void settle() { watchTheCable(); }
     /// Those who had the pulled nodes open have closed them.
     void forgetPulled();
     [[nodiscard]] sim::LiveRig& live() { return live_; }

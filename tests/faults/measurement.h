@@ -23,7 +23,12 @@ struct Outcome {
     std::map<std::string, int> counts;
     std::vector<int> events;            ///< their codes
     std::vector<std::string> troubles;  ///< what no row may show
-    Nanoseconds detected{0};            ///< the longest
+    std::vector<std::string> malformed;
+    Nanoseconds detected{0};     ///< the longest; likewise those that follow
+    Nanoseconds reclaimed{0};    ///< from the plug to the claim
+    Nanoseconds noticed{0};      ///< from silent reports to their opening
+    Nanoseconds longestCall{0};  ///< of the transport, beyond what it was to wait
+    int slack = 1;               ///< how many times a limit may last
 };
 
 [[nodiscard]] Outcome measure(RigDoor& door, const RigSetup& setup, const Row& row);

@@ -21,8 +21,8 @@ using device_test::Holdings;
 
 constexpr int kSide = 256, kChunk = 16384;  // a ring of a hundred transfers, not of a thousand
 
-/// Seven seconds. This seed's faults: a lost chunk, an unknown one, a loss of power, and a hang until
-/// the port is reset.
+/// Seven seconds. This seed's faults: a lost chunk, an unknown one, a loss of power, and a hang
+/// until the port is reset.
 SoakPlan shortPlan() {
     return {.captures = 12, .every = "1.4s..1.6s", .seed = seedOr(5), .realTime = true};
 }
