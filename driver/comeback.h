@@ -3,8 +3,10 @@
 // gap afterwards.
 
 #include <functional>
+#include <optional>
 #include <string>
 
+#include "driver/protocol/reports.h"
 #include "driver/protocol/transport.h"
 #include "proc/core/result.h"
 #include "proc/core/units.h"
@@ -25,6 +27,9 @@ struct Interruption {
     bool sameBoot = true;
     int resent = 0;  ///< frames that the rig still held
     int redone = 0;  ///< frames that are exposed again, or were not exposed yet
+    /// Of the command that the loss cut off, if one was on its way: the rig has done it.
+    std::optional<bool> cutOffDone{};
+    Stats stats{};  ///< the rig's own counters as it came back, since its boot
 };
 
 }  // namespace gonio::driver

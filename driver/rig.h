@@ -106,7 +106,8 @@ public:
     /// configure() and close(), abort it; nothing of it is ever seen. After a request that is not
     /// to be kept lit nothing is armed, nor on a rig that keeps fewer than three frames for RESEND,
     /// nor where there is no memory for the frames of both, nor what the rig refuses: its own
-    /// capture() then says why.
+    /// capture() then says why. With a sink that memory must be there before `request` is armed:
+    /// one that was armed ahead itself arms nothing that needs more than what came before it.
     /// A `sink` is given each frame as soon as it and those before it are there, in the order of
     /// their index, so that a capture of many frames needs the memory of few. All memory is taken
     /// before anything is armed, for what is armed ahead too; while a sink is busy nothing is read,
@@ -149,16 +150,15 @@ private:
     [[nodiscard]] Result<void> check(const CaptureRequest& request) const;
     [[nodiscard]] Result<void> check(const ArmAhead& ahead) const;
     Result<void> admit(const CaptureRequest& request, const ArmAhead& ahead);
-    /// What a capture is made of, through all its attempts.
+    /// What a capture is asked for, through all its attempts.
     struct Making {
         const CaptureRequest& request;
         const ArmAhead& ahead;
         const FrameSink& sink;
-        CaptureProgress& progress;
     };
     Result<void> fill(const Making& making);
     Result<void> collect(const ArmedCapture& armed, const Making& making);
-    Result<void> askForHeld(const ArmedCapture& armed, CaptureProgress& progress);
+    Result<void> askForHeld(const ArmedCapture& armed);
     // Of a rig that was lost (rig_comeback.cpp).
     template <class Work>
     auto surviving(Work work) -> decltype(work());
@@ -167,7 +167,7 @@ private:
     void beginCall();
     Result<void> comeBack(const Error& lost);
     [[nodiscard]] Error lostTooOften(const Error& lost) const;
-    Result<void> takeUp(Transport& transport);
+    Result<void> takeUp(Transport& transport, Interruption& gap);
     Result<void> attempt(const Making& making);
     Result<ArmedCapture> takeUpOrArm(const CaptureRequest& request, int frames);
     Result<void> armAhead(const CaptureRequest& request);
@@ -177,7 +177,16 @@ private:
     };
     Result<ArmedCapture> arm(const CaptureRequest& request, int frames, Turn turn);
     [[nodiscard]] int framesHeld() const;
-    [[nodiscard]] bool haveMemoryFor(int frames, int next) const;
+    [[nodiscard]] ExpectedCapture sized(int frames) const;
+    [[nodiscard]] bool mayArmAhead(const Making& making) const;
+    /// Of a capture and the next.
+    struct MemoryNeed {
+        ExpectedCapture largest;
+        std::size_t wire = 0, pixels = 0;  ///< buffers
+    };
+    [[nodiscard]] MemoryNeed needed(const CaptureRequest& request,
+                                    const ArmAhead& ahead,
+                                    bool sink) const;
     void provideMemory(const CaptureRequest& request, const ArmAhead& ahead, bool sink);
     Result<FramePlan> apply(const CaptureRequest& request);
     Result<void> setFormat(const Geometry& geometry);
@@ -185,13 +194,12 @@ private:
     Result<void> quiesce();
     Result<void> abort();
     Result<void> flush();
-    [[nodiscard]] Error failed(const Error& error,
-                               const CaptureProgress& progress,
-                               const Anomalies& before) const;
+    [[nodiscard]] Error failed(const Error& error, const Anomalies& before) const;
 
     std::unique_ptr<RigLink> link_;  ///< empty after a move
     Assembler assembler_;
     PixelMemory pixels_;
+    CaptureProgress progress_;  ///< of the present call of capture()
     std::optional<Geometry> geometry_;
     std::optional<OnItsWay> ahead_;
     CaptureIds ids_;

@@ -28,7 +28,7 @@ Result<void> Rig::comeBack(const Error& lost) {
     for (int tries = 0; tries < kMostTries; ++tries) {
         const Result<Transport*> opened = onLost_(why);
         if (!opened) return opened.error();
-        if (auto taken = takeUp(**opened); !taken) {
+        if (auto taken = takeUp(**opened, gap); !taken) {
             why = taken.error();
             link_->abandon(why);
             continue;
@@ -52,8 +52,12 @@ Result<void> Rig::comeBack(const Error& lost) {
 
 /// Claimed, dark and idle, with nothing on its way. The format is set again even to the same boot:
 /// another program may have had the rig meanwhile.
-Result<void> Rig::takeUp(Transport& transport) {
+Result<void> Rig::takeUp(Transport& transport, Interruption& gap) {
     if (auto claimed = link_->resume(transport); !claimed) return claimed;
+    if (!gap.cutOffDone) gap.cutOffDone = link_->cutOffDone();
+    const Result<Stats> counted = link_->stats();
+    if (!counted && link_->lost()) return counted.error();
+    if (counted) gap.stats = *counted;  // a damaged report is no loss
     if (auto idle = abort(); !idle) return idle;
     return geometry_ ? setFormat(*geometry_) : Result<void>();
 }
@@ -68,9 +72,9 @@ Error Rig::lostTooOften(const Error& lost) const {
 void Rig::beginCall() { mostComebacks_ = comebacks_ + kMostComebacks; }
 
 /// Of the frames still missing, those that the rig holds.
-Result<void> Rig::askForHeld(const ArmedCapture& armed, CaptureProgress& progress) {
-    progress.interrupt();
-    const auto held = Collector(*link_, assembler_, pixels_).askForAll(armed, progress);
+Result<void> Rig::askForHeld(const ArmedCapture& armed) {
+    progress_.interrupt();
+    const auto held = Collector(*link_, assembler_, pixels_).askForAll(armed, progress_);
     if (!held) return held.error();
     if (interruptions_.empty()) return {};  // a sink has taken them
     interruptions_.back().resent += held->held;

@@ -120,12 +120,6 @@ TEST_F(UsbFaults, WithTheNextCaptureArmedFaultsChangeNoFrame) {
     EXPECT_GE(rig->anomalies().lostChunks, 3U);
 }
 
-TEST_F(UsbFaults, AResetStreamGoesOnWithWholeFrames) {
-    repaired(litFrames(1, 2));
-    ASSERT_TRUE(transport->resetStream());
-    repaired(litFrames(2, 2));
-}
-
 TEST_F(UsbFaults, WaitingForNothingEndsAtItsDeadline) {
     const auto took = timed([&] {
         const auto chunk = transport->readBulk(150ms);

@@ -70,6 +70,33 @@ TEST(RigComebackAnywhere, SameBootAtAnyCallCostsNoFrame) {
     EXPECT_GT(calls, 60) << "both captures were broken everywhere";
 }
 
+TEST(RigComebackAnywhere, TheLastAckTellsWhetherTheCommandThatWasCutOffWasDone) {
+    int unheard = 0, done = 0, none = 0;
+    (void)atEachCall([&](Bench& bench) {
+        expectUndisturbed(bench.rig->capture(kRequest), kRequest);
+        for (const Interruption& gap : bench.rig->takeInterruptions()) {
+            const bool atWrite = bench.plugs.cables.front()->brokeAtWrite;
+            unheard += atWrite ? 1 : 0;
+            EXPECT_EQ(gap.cutOffDone == false, atWrite) << "every command that was heard is done";
+            done += gap.cutOffDone.value_or(false) ? 1 : 0;
+            none += gap.cutOffDone ? 0 : 1;
+            EXPECT_EQ(gap.stats.commandsDone, 7U) << "read again";
+        }
+    });
+    EXPECT_GE(unheard, 3) << "SET_LED, SET_EXPOSURE, ARM";
+    EXPECT_GE(done, 3) << "the same, their ACKs lost";
+    EXPECT_GE(none, 10) << "in the stream";
+}
+
+TEST_F(RigComeback, AnotherBootHasDoneNothingOfWhatWasCutOff) {
+    broken = [&] { device.powerLost(); };
+    breakAfter(1);  // SET_LED is sent, its ACK is awaited
+    EXPECT_FALSE(rig->capture(kRequest));
+    const auto gaps = rig->takeInterruptions();
+    ASSERT_EQ(gaps.size(), 1U);
+    EXPECT_EQ(gaps[0].cutOffDone, false);
+}
+
 TEST(RigComebackAnywhere, ASinkIsGivenEachFrameOnce) {
     const int calls = atEachCall([](Bench& bench) {
         Capture given;

@@ -48,10 +48,6 @@ public:
         if (Result<void> there = pass(); !there) return there.error();
         return door_.readBulk(wait);
     }
-    Result<void> resetStream() override {
-        if (Result<void> there = pass(); !there) return there;
-        return door_.resetStream();
-    }
     Result<void> reopenReports() override {
         if (Result<void> there = pass(); !there) return there;
         return door_.reopenReports();
