@@ -89,11 +89,15 @@ std::string rigName(const DeviceStrings& strings) {
     return "rig " + printable(strings.serial, kMostSerial);
 }
 
+Result<void> checkSerial(const DeviceStrings& strings) {
+    if (soundSerial(strings.serial)) return {};
+    return deviceError("serial number \"" + printable(strings.serial, kMostSerial) +
+                       "\" is not 1..32 printable characters");
+}
+
 Result<Identity> readIdentity(Transport& transport) {
     const DeviceStrings strings = transport.strings();
-    if (!soundSerial(strings.serial)) {
-        return deviceError("serial number is not 1..32 printable characters");
-    }
+    if (auto sound = checkSerial(strings); !sound) return sound.error();
     const auto version = parseVersion(strings.protocol);
     if (!version) {
         return deviceError("string 240 is \"" + printable(strings.protocol, kMostSerial) +

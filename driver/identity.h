@@ -19,6 +19,8 @@ struct Identity {
 
 [[nodiscard]] Result<Identity> readIdentity(Transport& transport);
 
+/// 1..32 printable characters, or an error that says so.
+[[nodiscard]] Result<void> checkSerial(const DeviceStrings& strings);
 /// "rig SIM-0042", as messages name it.
 [[nodiscard]] std::string rigName(const DeviceStrings& strings);
 

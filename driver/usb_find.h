@@ -34,6 +34,7 @@ struct RigInterfaces {
     int stream = -1;
     std::uint8_t bulkIn = 0;
     std::size_t packet = 0;  ///< bytes of the bulk endpoint
+    bool readable = true;    ///< the configuration descriptor could be read at all
     [[nodiscard]] bool complete() const { return hid >= 0 && stream >= 0 && packet > 0; }
 };
 
@@ -51,14 +52,18 @@ struct OpenedRig {
 
 /// A fresh one each time: without udev an old context never sees what was plugged in later.
 [[nodiscard]] Result<UsbContext> makeUsbContext();
-/// Devices of the wanted ids that have a rig's interfaces, and the wanted serial where it is known.
+/// Devices of the wanted ids, and of the wanted serial where it is known; one that has not a rig's
+/// interfaces has an obstacle that says so, and cannot be opened.
 [[nodiscard]] Result<std::vector<FoundRig>> findRigs(libusb_context* context,
                                                      const UsbSelection& wanted);
 /// Opens and reads the strings; claims nothing yet.
 [[nodiscard]] Result<OpenedRig> openRig(const FoundRig& found);
 /// From descriptors of any origin.
 [[nodiscard]] RigInterfaces interfacesOf(const libusb_config_descriptor& config);
-/// The text of a string descriptor as it came; empty where it is none.
+/// What a rig's descriptors would have and these do not; empty: nothing.
+[[nodiscard]] std::string missingOf(const RigInterfaces& interfaces);
+/// The text of a string descriptor, a blank for each character that is not printable ASCII (which
+/// no serial number may have); empty where it is none.
 [[nodiscard]] std::string textIn(std::span<const std::uint8_t> descriptor);
 /// It has the descriptors of a SuperSpeed device, whatever the port gives it.
 [[nodiscard]] bool canSuperSpeed(const OpenedRig& rig);

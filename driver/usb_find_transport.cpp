@@ -56,7 +56,7 @@ int speedOf(libusb_device* device) {
 
 RigInterfaces interfacesOf(libusb_device* device) {
     libusb_config_descriptor* config = nullptr;
-    if (libusb_get_active_config_descriptor(device, &config) != 0) return {};
+    if (libusb_get_active_config_descriptor(device, &config) != 0) return {.readable = false};
     const RigInterfaces found = driver::interfacesOf(*config);
     libusb_free_config_descriptor(config);
     return found;
@@ -91,7 +91,10 @@ RigInterfaces interfacesOf(const libusb_config_descriptor& config) {
             main.bInterfaceSubClass != kStreamSubClass ||
             main.bInterfaceProtocol != kStreamProtocol)
             continue;
-        for (int e = 0; e < main.bNumEndpoints; ++e) {
+        if (found.stream < 0) found.stream = main.bInterfaceNumber;
+        // Of an interface whose descriptors end too soon libusb has no endpoints, whatever it
+        // counts.
+        for (int e = 0; main.endpoint != nullptr && e < main.bNumEndpoints; ++e) {
             const libusb_endpoint_descriptor& endpoint = main.endpoint[e];
             const bool in = (endpoint.bEndpointAddress & LIBUSB_ENDPOINT_IN) != 0;
             if (!in || (endpoint.bmAttributes & 3) != LIBUSB_TRANSFER_TYPE_BULK) continue;
@@ -104,12 +107,27 @@ RigInterfaces interfacesOf(const libusb_config_descriptor& config) {
     return found;
 }
 
+std::string missingOf(const RigInterfaces& interfaces) {
+    if (!interfaces.readable)
+        return "its configuration descriptor cannot be read: a length or a count in it is wrong";
+    if (interfaces.hid < 0) return "its descriptors have no HID interface (bInterfaceClass 3)";
+    if (interfaces.stream < 0)
+        return "its descriptors have no stream interface (bInterfaceClass 255, bInterfaceSubClass "
+               "71, bInterfaceProtocol 1)";
+    const std::string stream = std::to_string(interfaces.stream);
+    if (interfaces.bulkIn == 0)
+        return "interface " + stream + " has no bulk IN endpoint (bEndpointAddress, bmAttributes)";
+    if (interfaces.packet == 0)
+        return "the bulk endpoint of interface " + stream + " has wMaxPacketSize 0";
+    return {};
+}
+
 std::string textIn(std::span<const std::uint8_t> raw) {
     if (raw.size() < 2 || raw[0] < 2 || raw[1] != LIBUSB_DT_STRING) return {};
     std::string text;
     for (std::size_t i = 2; i + 1 < std::min<std::size_t>(raw[0], raw.size()); i += 2) {
         const bool printable = raw[i + 1] == 0 && raw[i] >= ' ' && raw[i] <= '~';
-        text += printable ? static_cast<char>(raw[i]) : '?';
+        text += printable ? static_cast<char>(raw[i]) : ' ';
     }
     return text;
 }
@@ -153,7 +171,6 @@ Result<std::vector<FoundRig>> findRigs(libusb_context* context, const UsbSelecti
         if (descriptor.idVendor != wanted.vendor || descriptor.idProduct != wanted.product)
             continue;
         const RigInterfaces interfaces = interfacesOf(device.get());
-        if (!interfaces.complete()) continue;
         const std::string place = placeOf(device.get());
         const int speed = speedOf(device.get());
         const std::string serial = knownSerial(place);
@@ -165,7 +182,7 @@ Result<std::vector<FoundRig>> findRigs(libusb_context* context, const UsbSelecti
                                 .serial = serial,
                                 .place = place,
                                 .protocol = {},
-                                .obstacle = {},
+                                .obstacle = missingOf(interfaces),
                                 .speed = speed}});
     }
     libusb_free_device_list(list, 0);

@@ -10,6 +10,7 @@ namespace gonio::driver {
 struct UsbLedger {
     std::atomic<int> streams{0};
     std::atomic<int> transfersInFlight{0};
+    std::atomic<int> transfersAllowed{0};  ///< in flight at most, as the rings are now
     std::atomic<int> hidThreads{0};
     std::atomic<int> quarantinedTransfers{0};
     std::atomic<int> quarantinedThreads{0};

@@ -1,6 +1,8 @@
 #pragma once
 // The bulk stream of an opened rig: a ring of transfers in flight and the thread that serves it.
 // The ring holds at most 2 MiB; when the system refuses memory it is halved, down to two transfers.
+// With memory for none it tries again, and has failed after kMemoryLimit (protocol/fault_limit.h);
+// at the start it has failed at once.
 // Nothing is allocated after start(). A transfer that nobody has read, or that the reader still
 // looks at, is not in flight: a slow reader holds the rig back and loses nothing.
 // STALL: all transfers are drained, the halt is cleared, and the stream goes on; OVERFLOW: that
@@ -86,7 +88,7 @@ private:
     void inFlight(int change);
     void takeBackLent();
     void shrink();
-    [[nodiscard]] std::string memoryHint() const;
+    void setRing(int transfers);
     void fail(Error error);
     [[nodiscard]] int busy() const;
 
@@ -101,6 +103,7 @@ private:
     std::optional<std::size_t> lent_;  ///< the slot whose bytes the reader has
     StreamCounters counters_;
     int inFlight_ = 0;
+    std::optional<std::chrono::steady_clock::time_point> starvedSince_;  ///< no memory for any
     bool holding_ = true;  ///< nothing is submitted: before start, while draining, after the end
     bool stalled_ = false, suspect_ = false, resetWanted_ = false;
     bool stopping_ = false, finished_ = false, warned_ = false;

@@ -47,6 +47,7 @@ UsbStream::UsbStream(UsbContext context, OpenedRig rig)
 
 UsbStream::~UsbStream() {
     --usbLedger().streams;
+    usbLedger().transfersAllowed -= counters_.ring;
     if (inFlight_ > 0) {
         usbLedger().transfersInFlight -= inFlight_;
         usbLedger().quarantinedTransfers += inFlight_;
@@ -78,10 +79,10 @@ Result<void> UsbStream::start(std::size_t maxChunkPayload) {
                                   0);
     }
     std::unique_lock lock(mutex_);
-    counters_.ring = static_cast<int>(slots_.size());
+    setRing(static_cast<int>(slots_.size()));
     holding_ = false;
     submitIdle();
-    if (inFlight_ == 0 && !failure_) fail({ErrorKind::Device, memoryHint()});
+    if (starvedSince_) fail({ErrorKind::Device, memoryHint("rig " + strings().serial, 0)});
     // Also after a failure: what was submitted must be taken back.
     thread_ = std::thread([self = shared_from_this()] { self->serve(); });
     if (failure_) return *failure_;
@@ -188,6 +189,7 @@ void UsbStream::serve() {
             continue;
         }
         if (failure_) continue;
+        if (starvedSince_) submitIdle();
         lock.unlock();
         if (stalled || suspect) recover(stalled);
         if (wanted) doReset();
@@ -353,6 +355,7 @@ void UsbStream::submitIdle() {
         if (code == 0) {
             slot.place = Place::InFlight;
             inFlight(1);
+            starvedSince_.reset();
         } else if (code == LIBUSB_ERROR_NO_MEM) {
             return shrink();
         } else if (code == LIBUSB_ERROR_NO_DEVICE) {
@@ -367,14 +370,18 @@ void UsbStream::submitIdle() {
 
 /// What is in flight stays so: the ring shrinks as transfers end.
 void UsbStream::shrink() {
-    counters_.ring = std::max(kFewest, counters_.ring / 2);
-    if (!std::exchange(warned_, true)) log::warning(memoryHint());
+    setRing(std::max(kFewest, counters_.ring / 2));
+    const std::string name = "rig " + strings().serial;
+    if (!std::exchange(warned_, true)) log::warning(memoryHint(name, counters_.ring));
+    if (busy() > 0) return;
+    if (!starvedSince_) starvedSince_ = steadyNow();
+    if (steadyNow() - *starvedSince_ >= kMemoryLimit)
+        fail({ErrorKind::Device, memoryHint(name, 0)});
 }
 
-std::string UsbStream::memoryHint() const {
-    return "rig " + strings().serial + ": the system has no memory for more USB transfers, " +
-           std::to_string(counters_.ring) +
-           " are kept; write a larger number into /sys/module/usbcore/parameters/usbfs_memory_mb";
+void UsbStream::setRing(int transfers) {
+    usbLedger().transfersAllowed += transfers - counters_.ring;
+    counters_.ring = transfers;
 }
 
 void UsbStream::fail(Error error) {

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "driver/hid_channel.h"
+#include "driver/identity.h"
 #include "driver/protocol/reports.h"
 #include "driver/steady_clock.h"
 #include "driver/usb_find.h"
@@ -126,6 +127,29 @@ Result<Chosen> bySerial(const std::vector<FoundRig>& rigs, const std::string& se
     return Error{ErrorKind::NoRig, "rig " + serial + " is not there, rig " + others + " is"};
 }
 
+/// Nobody has asked for it by its serial number, so that it may have none.
+Result<Chosen> theOnlyOne(const FoundRig& rig) {
+    auto chosen = choose(rig);
+    if (!chosen) return chosen;
+    if (auto sound = checkSerial(chosen->opened.strings); !sound)
+        return sound.error().in("USB device " + chosen->place);
+    return chosen;
+}
+
+/// Those that may be rigs; an error that says why there is none.
+Result<std::vector<FoundRig>> soundOnes(std::vector<FoundRig> rigs) {
+    std::string obstacle;
+    for (const FoundRig& found : rigs) {
+        if (!found.interfaces.complete())
+            obstacle = "USB device " + found.rig.place + " (" +
+                       idText(found.rig.vendor, found.rig.product) +
+                       ") is no rig: " + found.rig.obstacle + "; install a rig's firmware";
+    }
+    std::erase_if(rigs, [](const FoundRig& found) { return !found.interfaces.complete(); });
+    if (rigs.empty() && !obstacle.empty()) return Error{ErrorKind::NoRig, obstacle};
+    return rigs;
+}
+
 Result<Chosen> theOne(const std::vector<FoundRig>& rigs, const UsbSelection& wanted) {
     const std::string ids = idText(wanted.vendor, wanted.product);
     if (rigs.empty()) {
@@ -134,7 +158,7 @@ Result<Chosen> theOne(const std::vector<FoundRig>& rigs, const UsbSelection& wan
                          "with USB id " + ids + " is there; is it plugged in and powered?"};
     }
     if (wanted.serial) return bySerial(rigs, *wanted.serial);
-    if (rigs.size() == 1) return choose(rigs.front());
+    if (rigs.size() == 1) return theOnlyOne(rigs.front());
     std::string names;
     for (const FoundRig& found : rigs) names += " " + found.rig.serial;
     return Error{ErrorKind::Usage,
@@ -175,7 +199,7 @@ Result<std::vector<UsbRig>> listUsb(const UsbSelection& wanted) {
     std::vector<UsbRig> rigs;
     for (const FoundRig& one : *found) {
         rigs.push_back(one.rig);
-        inspect(one, rigs.back());
+        if (one.interfaces.complete()) inspect(one, rigs.back());
     }
     return rigs;
 }
@@ -183,7 +207,9 @@ Result<std::vector<UsbRig>> listUsb(const UsbSelection& wanted) {
 Result<std::unique_ptr<Transport>> openUsb(const UsbSelection& wanted) {
     auto context = makeUsbContext();
     if (!context) return context.error();
-    auto rigs = findRigs(context->get(), wanted);
+    auto found = findRigs(context->get(), wanted);
+    if (!found) return found.error();
+    auto rigs = soundOnes(std::move(*found));
     if (!rigs) return rigs.error();
     auto chosen = theOne(*rigs, wanted);
     if (!chosen) return chosen.error();

@@ -16,6 +16,7 @@ using namespace driver;  // the wire's words
 namespace {
 
 constexpr Nanoseconds kReadout = std::chrono::milliseconds(1);
+constexpr std::uint16_t kUnknownEvent = 999;
 
 }  // namespace
 
@@ -96,9 +97,18 @@ void Device::sendUnknownChunk() {
 }
 
 void Device::tellUnknownEvent() {
-    constexpr std::uint16_t kUnknown = 999;
-    raise(kUnknown, 0, 0);
+    raise(kUnknownEvent, 0, 0);
     pushStatus();
+}
+
+void Device::pileUpReports(int count) {
+    for (int i = 0; i < count; ++i) {
+        if (i % 2 == 0) {
+            raise(kUnknownEvent, 0, 0);
+        } else {
+            pushStatus();
+        }
+    }
 }
 
 std::optional<Report> Device::takeInput() { return notices_.take(); }

@@ -79,6 +79,11 @@ public:
     /// Sends a chunk of a type, or tells an event of a code, that no host knows.
     void sendUnknownChunk();
     void tellUnknownEvent();
+    /// So many reports at one moment, an event of such a code and a STATUS by turns.
+    void pileUpReports(int count);
+    [[nodiscard]] const Notices::Overflow& overflow() const { return notices_.overflow(); }
+    /// Somebody has claimed it, and his heart beats.
+    [[nodiscard]] bool claimed() const { return claim_.alive(); }
     [[nodiscard]] bool capturing() const { return capture_.has_value(); }
     /// An LED shines at this moment.
     [[nodiscard]] bool lit() const { return current_.led >= 0; }

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "proc/core/log.h"
 #include "sim/frame_chunks.h"
 
 namespace gonio::sim {
@@ -19,6 +20,7 @@ constexpr int kFewestTransfers = 2;
 // Requests: USB 2.0, chapter 9, and HID 1.11.
 constexpr UsbSetup kGetStatus{.requestType = 0x80, .request = 0, .length = 2};
 constexpr UsbSetup kClearHalt{.requestType = 0x02, .request = 1, .index = usb::kBulkIn};
+constexpr UsbSetup kClearReports{.requestType = 0x02, .request = 1, .index = usb::kInterruptIn};
 constexpr UsbSetup kFlush{.requestType = 0x01, .request = 11, .index = UsbDevice::kStreamInterface};
 
 UsbSetup featureRequest(bool get, std::uint8_t id) {
@@ -55,7 +57,10 @@ InProcessDoor::InProcessDoor(std::shared_ptr<FaultyUsb> usb, int pulls)
 
 Result<std::unique_ptr<InProcessDoor>> InProcessDoor::openAgain() const {
     if (!usb_->plugged()) return Error{ErrorKind::NoRig, "no rig is plugged in"};
-    return std::unique_ptr<InProcessDoor>(new InProcessDoor(usb_, usb_->pulls()));
+    std::unique_ptr<InProcessDoor> door(new InProcessDoor(usb_, usb_->pulls()));
+    (void)door->fillRing();
+    if (!door->starvedSince_) return door;
+    return Error{ErrorKind::Device, driver::memoryHint("rig " + door->strings_.serial, 0)};
 }
 
 std::string InProcessDoor::stringOf(std::uint8_t index) {
@@ -64,9 +69,14 @@ std::string InProcessDoor::stringOf(std::uint8_t index) {
                                           .request = 6,
                                           .value = static_cast<std::uint16_t>(kStringType | index),
                                           .length = 255});
+    // As the real door reads it (textIn in driver/usb_find.h).
+    const auto& raw = reply.data;
+    if (raw.size() < 2 || raw[0] < 2 || raw[1] != kStringType >> 8) return {};
     std::string text;
-    for (std::size_t i = 2; i + 1 < reply.data.size(); i += 2)
-        text += static_cast<char>(reply.data[i]);
+    for (std::size_t i = 2; i + 1 < std::min<std::size_t>(raw[0], raw.size()); i += 2) {
+        const bool printable = raw[i + 1] == 0 && raw[i] >= ' ' && raw[i] <= '~';
+        text += printable ? static_cast<char>(raw[i]) : ' ';
+    }
     return text;
 }
 
@@ -141,6 +151,8 @@ Result<std::optional<driver::Report>> InProcessDoor::readInput(Nanoseconds wait)
     do {
         if (auto is = there(); !is) return is.error();
         const UsbReply reply = usb_->interruptIn();
+        // The kernel's part: usbhid clears the halt of its endpoint by itself.
+        if (reply.answer == UsbAnswer::Stall) (void)usb_->control(kClearReports);
         if (reply.answer != UsbAnswer::Done) continue;
         driver::Report report{};
         std::copy_n(reply.data.begin(), std::min(report.size(), reply.data.size()), report.begin());
@@ -165,8 +177,10 @@ Result<std::optional<driver::BulkBytes>> InProcessDoor::readBulk(Nanoseconds wai
     const std::size_t room = transferBytes(device().maxChunkPayload(), usb_->bulkPacket());
     do {
         if (failure_) return *failure_;
-        if (auto fits = fitRing(); !fits) return fits.error();
+        if (auto filled = fillRing(); !filled) return filled.error();
+        if (counters_.inFlight == 0) continue;  // nothing that the rig could answer
         UsbReply reply = usb_->bulkIn(room);
+        if (reply.answer != UsbAnswer::Nak) --counters_.inFlight;
         if (reply.answer == UsbAnswer::Done) {
             lent_ = std::move(reply.data);
             const double cost =
@@ -201,12 +215,23 @@ Result<void> InProcessDoor::recover(UsbAnswer answer) {
     return {};
 }
 
-/// No memory for as many transfers: half of them, two at least.
-Result<void> InProcessDoor::fitRing() {
-    const int most = usb_->mostTransfers();
-    if (most == 0) return fail("gets no memory for USB transfers: raise usbfs_memory_mb");
-    while (counters_.ring > std::max(most, kFewestTransfers))
+/// Submits what may be in flight. No memory for as many: half of them, two at least.
+Result<void> InProcessDoor::fillRing() {
+    while (counters_.inFlight < counters_.ring) {
+        if (counters_.inFlight < usb_->mostTransfers()) {
+            ++counters_.inFlight;
+            starvedSince_.reset();
+            continue;
+        }
         counters_.ring = std::max(kFewestTransfers, counters_.ring / 2);
+        const std::string name = "rig " + strings_.serial;
+        if (!std::exchange(warned_, true)) log::warning(driver::memoryHint(name, counters_.ring));
+        if (counters_.inFlight > 0) return {};
+        if (!starvedSince_) starvedSince_ = now();
+        if (now() - *starvedSince_ < driver::kMemoryLimit) return {};
+        failure_ = Error{ErrorKind::Device, driver::memoryHint(name, 0)};
+        return *failure_;
+    }
     return {};
 }
 
@@ -220,10 +245,7 @@ Result<void> InProcessDoor::resetPort() {
     spend(kResetTime);
     if (usb_->pulls() != pulls_) return there();
     usb_->resetPort();
-    usb_->reportsOpened();
-    failure_.reset();
-    const auto answers = request("port reset", [&] { return usb_->control(kGetStatus); });
-    if (!answers) return answers.error();
+    failure_ = Error{ErrorKind::Device, "rig " + strings_.serial + ": its port was reset"};
     return {};
 }
 

@@ -4,8 +4,9 @@
 // kind carries), and waiting lets the virtual clock run to the next thing that happens. Every byte
 // passes the codec on both sides. What the bus and the rig do wrong is in the FaultyUsb behind it;
 // here it is met as the real transport meets it (driver/usb_stream.h): a stall is cleared, an error
-// probed, the third in ten seconds is a failure, and a failure is final, but for a port reset. A
-// rig that was unplugged is lost to this door for good: openAgain() makes another one.
+// probed, the third in ten seconds is a failure, and so is no memory for a single transfer for
+// kMemoryLimit (protocol/fault_limit.h). A failure is final, as is a port reset, and a rig that was
+// unplugged is lost to this door for good: openAgain() makes another one.
 
 #include <memory>
 #include <optional>
@@ -24,11 +25,13 @@ public:
         int stalls = 0;
         int overflows = 0;
         int errors = 0;
-        int ring = 8;  ///< transfers that may be in flight
+        int ring = 8;      ///< transfers that may be in flight
+        int inFlight = 0;  ///< as the system has memory
     };
 
     explicit InProcessDoor(DeviceConfig config);
-    /// The rig that is at the plug, whichever it is now; a NoRig error when there is none.
+    /// The rig that is at the plug, whichever it is now; a NoRig error when there is none, and a
+    /// Device error when there is no memory for any transfer.
     [[nodiscard]] Result<std::unique_ptr<InProcessDoor>> openAgain() const;
 
     [[nodiscard]] driver::DeviceStrings strings() const override { return strings_; }
@@ -61,7 +64,7 @@ private:
     template <class Ask>
     Result<UsbReply> request(const std::string& what, Ask ask);
     Result<void> recover(UsbAnswer answer);
-    Result<void> fitRing();
+    Result<void> fillRing();
 
     std::shared_ptr<FaultyUsb> usb_;
     int pulls_;
@@ -70,6 +73,8 @@ private:
     Counters counters_;
     driver::FaultLimit limit_;
     std::optional<Error> failure_;
+    std::optional<Nanoseconds> starvedSince_;  ///< no memory for any transfer
+    bool warned_ = false;
 };
 
 }  // namespace gonio::sim

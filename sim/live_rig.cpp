@@ -8,11 +8,10 @@ namespace {
 using namespace std::chrono_literals;
 using namespace driver;
 
-Nanoseconds realNow() { return std::chrono::steady_clock::now().time_since_epoch(); }
-
 }  // namespace
 
-LiveRig::LiveRig(DeviceConfig config) : usb_(std::move(config)), boot_(realNow()) {
+LiveRig::LiveRig(DeviceConfig config, Clock clock)
+    : usb_(std::move(config)), clock_(std::move(clock)), boot_(clock_()) {
     pump_ = std::jthread([this](const std::stop_token& stop) {
         while (!stop.stop_requested()) {
             flushReports();
@@ -26,11 +25,16 @@ LiveRig::~LiveRig() {
     pump_.join();
 }
 
-void LiveRig::advance() { usb_.advanceTo(realNow() - boot_ + skipped_); }
+Nanoseconds LiveRig::computersClock() {
+    return std::chrono::steady_clock::now().time_since_epoch();
+}
+
+void LiveRig::advance() { usb_.advanceTo(clock_() - boot_ + skipped_); }
 
 void LiveRig::listen(Sink sink) {
     const std::scoped_lock lock(mutex_);
     sink_ = std::move(sink);
+    listenedAfter_ = usb_.pulls();
 }
 
 void LiveRig::flushReports() {
@@ -42,8 +46,9 @@ void LiveRig::flushReports() {
 void LiveRig::handOn() {
     while (true) {
         const UsbReply reply = usb_.interruptIn();
+        if (reply.answer == UsbAnswer::Stall && sink_ && !faults.hung) sink_({});
         if (reply.answer != UsbAnswer::Done) return;
-        if (sink_ && !faults.hung) sink_(reply.data);
+        if (sink_ && !faults.hung && usb_.pulls() == listenedAfter_) sink_(reply.data);
     }
 }
 
@@ -76,7 +81,7 @@ void LiveRig::warmUp(const Window& window) {
     SessionSet release = claim;
     release.release = true;
     device.setFeature(encode(release));
-    skipped_ = device.now() - (realNow() - boot_);
+    skipped_ = device.now() - (clock_() - boot_);
     while (usb_.interruptIn().answer == UsbAnswer::Done) {
     }
 }

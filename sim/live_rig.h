@@ -19,21 +19,25 @@ namespace gonio::sim {
 
 /// Read by the doors; counters go down to zero as they are used up.
 struct Faults {
-    std::atomic<bool> hung{false};         ///< enumerated, and answers nothing
-    std::atomic<bool> claimed{false};      ///< another program has the stream interface
+    std::atomic<bool> hung{false};            ///< enumerated, and answers nothing
+    std::atomic<bool> claimed{false};         ///< another program has the stream interface
     std::atomic<bool> keepsCancelled{false};  ///< transfers that were cancelled do not come back
-    std::atomic<int> mostTransfers{1000};  ///< then the kernel has no memory for another
-    std::atomic<int> shorten{0};           ///< transfers that end after half their bytes
-    std::atomic<int> overflow{0};          ///< transfers that bring more than their buffer holds
-    std::atomic<int> protocolErrors{0};    ///< transfers that end in an error of the bus
-    std::atomic<int> portResets{0};        ///< counts up: asked for, also of a port without a rig
+    std::atomic<int> mostTransfers{1000};     ///< then the kernel has no memory for another
+    std::atomic<int> shorten{0};              ///< transfers that end after half their bytes
+    std::atomic<int> overflow{0};             ///< transfers that bring more than their buffer holds
+    std::atomic<int> protocolErrors{0};       ///< transfers that end in an error of the bus
+    std::atomic<int> portResets{0};  ///< counts up: asked for, also of a port without a rig
 };
 
 class LiveRig {
 public:
+    /// Takes a report; an empty one says that their endpoint is stalled, again and again until its
+    /// halt is cleared.
     using Sink = std::function<void(const std::vector<std::uint8_t>& report)>;
+    /// Never goes back; asked by one thread at a time.
+    using Clock = std::function<Nanoseconds()>;
 
-    explicit LiveRig(DeviceConfig config);
+    explicit LiveRig(DeviceConfig config, Clock clock = computersClock);
     ~LiveRig();
     LiveRig(const LiveRig&) = delete;
     LiveRig& operator=(const LiveRig&) = delete;
@@ -53,7 +57,8 @@ public:
             return answer;
         }
     }
-    /// Takes the reports from now on; empty: nobody listens, and they are lost.
+    /// Takes the reports from now on, of the rig that is at the plug and until another one is, or
+    /// it again; empty: nobody listens, and they are lost.
     void listen(Sink sink);
     /// takes a lit frame of each LED in this window, so that later frames come as fast
     /// as a rig's: what the simulator works out once is then known.
@@ -62,6 +67,7 @@ public:
     Faults faults;
 
 private:
+    [[nodiscard]] static Nanoseconds computersClock();
     void flushReports();
     void advance();
     void handOn();
@@ -69,6 +75,8 @@ private:
     FaultyUsb usb_;
     std::mutex mutex_;
     Sink sink_;
+    int listenedAfter_ = 0;  ///< pulls of the cable
+    Clock clock_;
     Nanoseconds boot_;
     Nanoseconds skipped_{0};  ///< device time that warming up took
     std::jthread pump_;

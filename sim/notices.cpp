@@ -25,7 +25,12 @@ void Notices::raise(const Happening& happening, std::uint64_t timeUs) {
 void Notices::tell(const Status& status) {
     inputs_.push_back(encode(status));
     // The host's queue keeps the oldest; what does not fit is lost.
-    while (inputs_.size() > kInputQueue) inputs_.pop_back();
+    while (inputs_.size() > kInputQueue) {
+        const bool isStatus = inputs_.back()[0] == static_cast<std::uint8_t>(ReportId::Status);
+        ++overflow_.reports;
+        overflow_.statuses += isStatus ? 1 : 0;
+        inputs_.pop_back();
+    }
 }
 
 std::optional<Report> Notices::take() {

@@ -1,7 +1,7 @@
 #pragma once
 // What the rig says by itself: the input reports on their way to the host, and the last 64 events,
-// which can be read again (PROTOCOL.md 2). The host's queue holds 63 reports; a STATUS that does
-// not fit is lost.
+// which can be read again (PROTOCOL.md 2). The host's queue holds 63 reports; what comes with
+// a STATUS that does not fit is lost.
 
 #include <cstdint>
 #include <deque>
@@ -23,12 +23,19 @@ public:
     void tell(const driver::Status& status);
     [[nodiscard]] std::optional<driver::Report> take();
 
+    /// Reports that did not fit into the host's queue, and those of them that were a STATUS.
+    struct Overflow {
+        int reports = 0, statuses = 0;
+    };
+    [[nodiscard]] const Overflow& overflow() const { return overflow_; }
+
     [[nodiscard]] std::uint32_t newestEvent() const { return nextEvent_ - 1; }
     void readEventsFrom(std::uint32_t sequence) { from_ = sequence; }
     [[nodiscard]] driver::EventsPage page() const;
 
 private:
     std::deque<driver::Report> inputs_;
+    Overflow overflow_;
     std::deque<driver::Event> events_;
     std::uint32_t nextEvent_ = 1;
     std::uint32_t from_ = 0;

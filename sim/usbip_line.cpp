@@ -48,6 +48,8 @@ UsbipLine::UsbipLine(LiveRig& rig, StreamSocket& socket, usbip::Bytes early)
       pulls_(rig.with([](FaultyUsb& usb) { return usb.pulls(); })) {
     rig_.listen([this](const std::vector<std::uint8_t>& report) {
         const std::scoped_lock lock(mutex_);
+        // Of a stalled endpoint one transfer is told; the next one after that is told again.
+        if (report.empty() && !reports_.empty() && reports_.back().empty()) return;
         if (reports_.size() == kMostReports) reports_.pop_front();
         reports_.push_back(report);
     });
@@ -160,6 +162,7 @@ std::optional<UsbipLine::Outcome> UsbipLine::nextReport() {
     const std::scoped_lock lock(mutex_);
     if (reports_.empty()) return std::nullopt;
     Outcome next{.data = std::move(reports_.front())};
+    if (next.data.empty()) next.status = -EPIPE;
     reports_.pop_front();
     return next;
 }
@@ -192,7 +195,8 @@ std::optional<UsbipLine::Outcome> UsbipLine::outcome(Queue queue, const Submit& 
 }
 
 Result<void> UsbipLine::end(const Submit& submit, Outcome outcome) {
-    auto& [status, data] = outcome;
+    int& status = outcome.status;
+    usbip::Bytes& data = outcome.data;
     if (submit.in && data.size() > submit.length) {
         status = -EOVERFLOW;
         data.clear();

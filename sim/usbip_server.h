@@ -44,6 +44,8 @@ public:
     [[nodiscard]] int port() const { return port_; }
     /// Those that are plugged in.
     [[nodiscard]] std::vector<usbip::Exported> rigs();
+    /// Serves one client more, who came another way, in the caller's thread until that one is gone.
+    void converse(StreamSocket socket, const std::stop_token& stop);
 
 private:
     struct Served {
@@ -58,7 +60,6 @@ private:
     UsbipServer(StreamSocket listener, int port, std::vector<LiveRig*> rigs, Note note);
     void accept(const std::stop_token& stop);
     void admit(StreamSocket socket);
-    void converse(StreamSocket socket, const std::stop_token& stop);
     void import(const std::string& busId,
                 StreamSocket& socket,
                 usbip::Bytes early,

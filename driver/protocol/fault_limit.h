@@ -1,5 +1,6 @@
 #pragma once
 // How often a stream may fail and be mended (PROTOCOL.md 4): three times in ten seconds is a fault.
+// And how long it may have no memory for a single transfer.
 
 #include <array>
 #include <chrono>
@@ -26,6 +27,15 @@ public:
 private:
     std::array<std::optional<Nanoseconds>, 2> last_{};
 };
+
+/// With nothing in flight a stream tries again for so long, and has failed then.
+inline constexpr Nanoseconds kMemoryLimit = std::chrono::seconds(5);
+
+/// `kept` of a ring's transfers are kept.
+[[nodiscard]] inline std::string memoryHint(const std::string& rig, int kept) {
+    return rig + ": the system has no memory for more USB transfers, " + std::to_string(kept) +
+           " are kept; write a larger number into /sys/module/usbcore/parameters/usbfs_memory_mb";
+}
 
 /// After the third. Its status, LINK, says that the rig is there and that opening it anew is no
 /// cure.

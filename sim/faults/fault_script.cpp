@@ -58,6 +58,7 @@ constexpr std::array kForms{
     Form{FaultKind::DelayAck, "delay ack @"},
     Form{FaultKind::DropReport, "drop report"},
     Form{FaultKind::DropReport, "drop # reports"},
+    Form{FaultKind::PileUpReports, "pile up # reports"},
     Form{FaultKind::SpoilReport, "spoil report"},
     Form{FaultKind::UnknownReport, "unknown report"},
     Form{FaultKind::UnknownEvent, "unknown event"},
@@ -192,6 +193,23 @@ std::optional<Fault> matched(const Form& form, Words& words) {
     return fault;
 }
 
+/// A form in which nothing would happen.
+Error idle(const Form& form, const std::string& wanted) {
+    return {ErrorKind::File, "\"" + std::string(form.words) + "\": wanted " + wanted};
+}
+
+/// No memory at all is a fault; none of anything else is none.
+Result<void> checkAmounts(const Form& form, const Fault& fault) {
+    if (fault.count.low < 1 && fault.kind != FaultKind::LimitTransfers)
+        return idle(form, "a number from 1 on, or 2..5, for #");
+    if (fault.kind == FaultKind::DelayAck && fault.time.low <= 0)
+        return idle(form, "a time above 0 for @");
+    if (fault.kind == FaultKind::Malform && !isMalformation(fault.name))
+        return Error{ErrorKind::File,
+                     "malform " + fault.name + ", wanted one of " + malformations()};
+    return {};
+}
+
 /// Of all forms that match, the longest.
 Result<Fault> readFault(Words& words) {
     const Form* best = nullptr;
@@ -205,14 +223,14 @@ Result<Fault> readFault(Words& words) {
         rest = at;
         fault = std::move(*found);
     }
-    if (!best) return wanted("what goes wrong, such as \"lose chunk\" or \"unplug for 1s\"", words);
-    if (fault.kind == FaultKind::Malform && !isMalformation(fault.name))
-        return Error{ErrorKind::File,
-                     "malform " + fault.name + ", wanted one of " + malformations()};
+    if (!best) return wanted(R"(what goes wrong, such as "lose chunk" or "unplug for 1s")", words);
+    if (auto sound = checkAmounts(*best, fault); !sound) return sound.error();
     words = rest;
     if (best->lasts && words.take("for")) {
+        const Words at = words;
         fault.lasting = words.time();
-        if (!fault.lasting || fault.lasting->low < 0) return wanted("a time such as 1.5s", words);
+        if (!fault.lasting || fault.lasting->low <= 0)
+            return wanted("a time above 0, such as 1.5s", at);
     }
     return fault;
 }

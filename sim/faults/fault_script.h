@@ -27,9 +27,9 @@ enum class FaultKind : std::uint8_t {
     StallBulk,
     BreakTransfer,  ///< a transfer that ends in an error of the bus
     Overflow,
-    StallReports,
-    SilenceReports,
-    Hang,  ///< enumerated, and every request is answered with NAK
+    StallReports,    ///< the endpoint halts, as a device that is confused does
+    SilenceReports,  ///< NAK without end
+    Hang,            ///< enumerated, and every request is answered with NAK
     HangUntilReset,
     EndHang,
     LimitTransfers,  ///< the system has no memory for more
@@ -51,7 +51,8 @@ enum class FaultKind : std::uint8_t {
     LoseAck,
     DelayAck,
     DropReport,
-    SpoilReport,  ///< its CRC is wrong
+    PileUpReports,  ///< more come than the host's queue holds
+    SpoilReport,    ///< its CRC is wrong
     UnknownReport,
     UnknownEvent,
     // The rig.

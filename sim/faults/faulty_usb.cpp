@@ -65,7 +65,7 @@ void FaultyUsb::play(FaultScript script) {
     while (auto due = player_.timed(now())) apply(*due);
 }
 
-void FaultyUsb::cause(DueFault fault) { apply(fault); }
+void FaultyUsb::cause(const DueFault& fault) { apply(fault); }
 
 // ---- time
 
@@ -109,6 +109,8 @@ void FaultyUsb::apply(const DueFault& fault) {
         return;
     }
     if (applyToRig(fault) || answers_.put(fault)) tally_.add(fault.kind);
+    // A host reads descriptors when a device is plugged in, and no more.
+    if (fault.kind == FaultKind::Malform && malformsDescriptors(fault.name)) plugIn({});
 }
 
 /// False: the fault is another's business.
@@ -139,6 +141,7 @@ bool FaultyUsb::applyToRig(const DueFault& fault) {
             device().sendUnknownChunk();
             return true;
         case FaultKind::UnknownEvent: device().tellUnknownEvent(); return true;
+        case FaultKind::PileUpReports: device().pileUpReports(fault.count); return true;
         case FaultKind::OpenInterlock: device().setInterlock(0); return true;
         case FaultKind::CloseInterlock:
             device().setInterlock(driver::interlock::kMayLight);
@@ -155,6 +158,18 @@ bool FaultyUsb::applyToRig(const DueFault& fault) {
         }
         default: return false;
     }
+}
+
+std::vector<std::uint8_t> FaultyUsb::deviceDescriptor() {
+    auto descriptor = usb().deviceDescriptor();
+    answers_.spoilDevice(descriptor);
+    return descriptor;
+}
+
+std::vector<std::uint8_t> FaultyUsb::configDescriptor() {
+    auto descriptors = usb().configDescriptor();
+    answers_.spoilConfig(descriptors);
+    return descriptors;
 }
 
 FrameFlaw FaultyUsb::flawOfExposure() {
@@ -184,6 +199,7 @@ void FaultyUsb::unplug(bool quietly) {
     hung_ = hungUntilReset_ = false;
     ++pulls_;
     pulledAt_ = now();
+    backSince_.reset();
     chunks_.clear();
     if (!stranger_) usb_.reset();
     stranger_.reset();
@@ -192,8 +208,11 @@ void FaultyUsb::unplug(bool quietly) {
 void FaultyUsb::plugIn(const std::string& otherSerial) {
     unplug();
     plugged_ = true;
-    reports_.opened();
-    if (otherSerial.empty()) return;
+    reports_.plugged();
+    if (otherSerial.empty()) {
+        backSince_ = now();
+        return;
+    }
     DeviceConfig other = config_;
     other.serial = otherSerial;
     ++other.seed;
@@ -203,6 +222,7 @@ void FaultyUsb::plugIn(const std::string& otherSerial) {
 
 void FaultyUsb::resetPort() {
     if (!plugged_) return;
+    ++portResets_;
     if (hungUntilReset_) hung_ = hungUntilReset_ = false;
     chunks_.clear();
     usb().reset();
@@ -213,6 +233,8 @@ void FaultyUsb::resetPort() {
 UsbReply FaultyUsb::control(const UsbSetup& setup, std::span<const std::uint8_t> out) {
     constexpr std::uint8_t kSetReport = 9, kOutput = 2, kToInterface = 0x21;
     constexpr std::uint8_t kSetInterface = 11, kOfInterface = 0x01;
+    constexpr std::uint8_t kClearFeature = 1, kOfEndpoint = 0x02;
+    constexpr std::uint8_t kFromDevice = 0x80, kGetDescriptor = 6, kDeviceType = 1, kConfigType = 2;
     if (!plugged_) return without(UsbAnswer::Gone);
     if (hung_) return without(UsbAnswer::Nak);
     if (setup.requestType == kToInterface && setup.request == kSetReport &&
@@ -220,8 +242,19 @@ UsbReply FaultyUsb::control(const UsbSetup& setup, std::span<const std::uint8_t>
         return interruptOut(out);
     const bool flush = setup.requestType == kOfInterface && setup.request == kSetInterface;
     if (flush && setup.index == UsbDevice::kStreamInterface) chunks_.clear();
+    if (setup.requestType == kOfEndpoint && setup.request == kClearFeature &&
+        setup.index == usb::kInterruptIn)
+        reports_.haltCleared(now());
     UsbReply reply = usb().control(setup, out);
+    if (backSince_ && device().claimed()) {
+        reclaimed_ = std::max(reclaimed_, now() - *backSince_);
+        backSince_.reset();
+    }
     answers_.spoil(setup, reply);
+    if (setup.requestType != kFromDevice || setup.request != kGetDescriptor) return reply;
+    if (setup.value == kDeviceType << 8) reply.data = deviceDescriptor();
+    if (setup.value == kConfigType << 8) reply.data = configDescriptor();
+    reply.data.resize(std::min<std::size_t>(reply.data.size(), setup.length));
     return reply;
 }
 
@@ -229,6 +262,7 @@ UsbReply FaultyUsb::interruptIn() {
     if (!plugged_) return without(UsbAnswer::Gone);
     if (hung_) return without(UsbAnswer::Nak);
     if (stranger_) return stranger_->interruptIn();
+    if (reports_.stalled()) return without(UsbAnswer::Stall);
     const auto report = reports_.next(device());
     if (!report) return without(UsbAnswer::Nak);
     return {.answer = UsbAnswer::Done, .data = {report->begin(), report->end()}};

@@ -25,7 +25,7 @@ public:
     /// The script's time begins now. What an earlier one has begun goes on.
     void play(FaultScript script);
     /// Now, whatever the script says.
-    void cause(DueFault fault);
+    void cause(const DueFault& fault);
     void cause(FaultKind kind) { cause(DueFault{.kind = kind}); }
 
     // Time is the rig's own.
@@ -38,8 +38,9 @@ public:
     UsbReply interruptIn();
     UsbReply interruptOut(std::span<const std::uint8_t> report);
     UsbReply bulkIn(std::size_t length);
-    /// The report side was opened anew: what was silent or stalled speaks again.
-    void reportsOpened() { reports_.opened(); }
+    /// The report side was opened anew: what was silent speaks again.
+    void reportsOpened() { reports_.opened(now()); }
+    [[nodiscard]] const ReportFaults& reports() const { return reports_; }
     /// A bus reset, by which the rig loses its link.
     void resetPort();
 
@@ -52,6 +53,10 @@ public:
     /// How often it was pulled: whoever opened it before has lost it.
     [[nodiscard]] int pulls() const { return pulls_; }
     [[nodiscard]] Nanoseconds pulledAt() const { return pulledAt_; }
+    /// The longest time from the plug to the claim, of a rig that was pulled.
+    [[nodiscard]] Nanoseconds reclaimed() const { return reclaimed_; }
+    /// How often its port was reset while it was plugged in.
+    [[nodiscard]] int portResets() const { return portResets_; }
     [[nodiscard]] bool hung() const { return hung_; }
     /// The system lets so many transfers be in flight.
     [[nodiscard]] int mostTransfers() const { return mostTransfers_; }
@@ -60,8 +65,10 @@ public:
     /// The rig that is at the plug: another one after "plug as".
     [[nodiscard]] UsbDevice& usb() { return stranger_ ? *stranger_ : usb_; }
     [[nodiscard]] const UsbIds& ids() const { return usb_.ids(); }
-    [[nodiscard]] std::vector<std::uint8_t> deviceDescriptor() { return usb().deviceDescriptor(); }
-    [[nodiscard]] std::vector<std::uint8_t> configDescriptor() { return usb().configDescriptor(); }
+    [[nodiscard]] std::vector<std::uint8_t> deviceDescriptor();
+    [[nodiscard]] std::vector<std::uint8_t> configDescriptor();
+    /// What was malformed of it, by the names that a script has for it.
+    [[nodiscard]] const std::vector<std::string>& malformed() const { return answers_.malformed(); }
     [[nodiscard]] CameraKind kind() const { return usb_.kind(); }
     [[nodiscard]] std::size_t bulkPacket() const { return usb_.bulkPacket(); }
 
@@ -92,6 +99,9 @@ private:
     bool hung_ = false, hungUntilReset_ = false;
     int pulls_ = 0;
     Nanoseconds pulledAt_{0};
+    std::optional<Nanoseconds> backSince_;  ///< plugged in again, not yet claimed
+    Nanoseconds reclaimed_{0};
+    int portResets_ = 0;
     int mostTransfers_;
     int commandsToLose_ = 0;
     int unknownChunksDue_ = 0;

@@ -1,5 +1,7 @@
 #include "sim/faults/report_faults.h"
 
+#include <algorithm>
+
 #include "driver/protocol/crc.h"
 #include "driver/protocol/wire.h"
 
@@ -35,20 +37,52 @@ bool ReportFaults::put(const DueFault& fault, Nanoseconds now) {
         case FaultKind::SpoilReport: ++toSpoil_; return true;
         case FaultKind::UnknownReport: extra_.push_back(unknownReport()); return true;
         case FaultKind::StallReports:
+            stalled_ = true;
+            stalledUntil_ = now + fault.lasting;
+            unheardSince_ = now;
+            tally_.add(fault.kind);
+            return true;
         case FaultKind::SilenceReports:
             silentUntil_ =
                 fault.lasting > Nanoseconds(0) ? now + fault.lasting : Nanoseconds::max();
+            unheardSince_ = now;
             tally_.add(fault.kind);
             return true;
         default: return false;
     }
 }
 
+void ReportFaults::opened(Nanoseconds now) {
+    if (silentUntil_ == Nanoseconds::max()) silentUntil_ = Nanoseconds(0);
+    if (unheardSince_) noticed_ = std::max(noticed_, now - *unheardSince_);
+    unheardSince_.reset();
+}
+
+void ReportFaults::plugged() {
+    if (silentUntil_ == Nanoseconds::max()) silentUntil_ = Nanoseconds(0);
+    stalled_ = false;
+    unheardSince_.reset();
+}
+
+void ReportFaults::haltCleared(Nanoseconds now) {
+    if (!stalled_) return;
+    ++haltsCleared_;
+    if (now < stalledUntil_) return;
+    stalled_ = false;
+    unheardSince_.reset();
+}
+
+void ReportFaults::lose(const Report& report) {
+    statusesLost_ += idOf(report) == driver::ReportId::Status ? 1 : 0;
+}
+
 std::optional<Report> ReportFaults::next(Device& device) {
     const Nanoseconds now = device.now();
-    while (now < silentUntil_ && device.takeInput()) {
+    while (now < silentUntil_) {
+        const auto unheard = device.takeInput();
+        if (!unheard) return std::nullopt;
+        lose(*unheard);
     }
-    if (now < silentUntil_) return std::nullopt;
     if (!held_.empty() && held_.begin()->first <= now) {
         const Report report = held_.begin()->second;
         held_.erase(held_.begin());
@@ -69,6 +103,7 @@ std::optional<Report> ReportFaults::next(Device& device) {
             delays_.pop_front();
             tally_.add(FaultKind::DelayAck);
         } else if (takeOne(toDrop_)) {
+            lose(*report);
             tally_.add(FaultKind::DropReport);
         } else {
             if (takeOne(toSpoil_)) {

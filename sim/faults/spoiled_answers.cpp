@@ -49,6 +49,46 @@ constexpr std::array kTexts{
     Text{"protocol-text", kProtocolString, "GRP/banana"},
     Text{"protocol-none", kProtocolString, ""},
 };
+
+/// A string descriptor's own bytes.
+struct RawText {
+    std::string_view name;
+    std::array<std::uint8_t, 5> bytes;
+};
+constexpr std::array kRawTexts{
+    RawText{"string-short", {1, kStringType, 'S', 0, 'I'}},
+    RawText{"string-type", {5, 4, 'S', 0, 'I'}},
+    RawText{"string-long", {255, kStringType, 0xFF, 0xD8, 'I'}},  // half a pair, and half a letter
+};
+
+constexpr std::uint8_t kInterfaceType = 4, kEndpointType = 5;
+constexpr std::uint8_t kNoMatter = 0xFF;
+
+/// A byte of the configuration that is overwritten: of the first descriptor of this type whose
+/// third byte (number of an interface, address of an endpoint) is so.
+struct ConfigByte {
+    std::string_view name;
+    std::uint8_t type, third;
+    std::size_t offset;
+    std::uint8_t value;
+};
+constexpr std::array kConfigBytes{
+    ConfigByte{"config-interfaces", 2, kNoMatter, 4, 200},
+    ConfigByte{"hid-class", kInterfaceType, usb::kHidInterface, 5, 0xFF},
+    ConfigByte{"stream-class", kInterfaceType, usb::kStreamInterface, 5, 8},
+    ConfigByte{"stream-protocol", kInterfaceType, usb::kStreamInterface, 7, 9},
+    ConfigByte{"stream-length-none", kInterfaceType, usb::kStreamInterface, 0, 0},
+    ConfigByte{"stream-length-long", kInterfaceType, usb::kStreamInterface, 0, 255},
+    ConfigByte{"endpoints-many", kInterfaceType, usb::kStreamInterface, 4, 31},
+    ConfigByte{"endpoint-direction", kEndpointType, usb::kBulkIn, 2, 0x02},
+    ConfigByte{"endpoint-kind", kEndpointType, usb::kBulkIn, 3, 3},
+    ConfigByte{"endpoint-packet", kEndpointType, usb::kBulkIn, 5, 0},
+    ConfigByte{"endpoint-length", kEndpointType, usb::kBulkIn, 0, 2},
+};
+constexpr std::string_view kEndpointNone = "endpoint-none", kConfigTotal = "config-total",
+                           kNoSerial = "serial-index-none";
+constexpr std::array kDescriptors{kEndpointNone, kConfigTotal, kNoSerial};
+
 constexpr std::string_view kIdentCrc = "ident-crc", kIdentShort = "ident-short";
 
 void sealReport(std::vector<std::uint8_t>& report) {
@@ -61,6 +101,16 @@ void setText(UsbReply& reply, std::string_view text) {
         reply.data.push_back(static_cast<std::uint8_t>(c));
         reply.data.push_back(0);
     }
+}
+
+/// Where such a descriptor begins; the end where there is none.
+std::size_t placeOf(const std::vector<std::uint8_t>& all, std::uint8_t type, std::uint8_t third) {
+    std::size_t at = 0;
+    while (at + 2 < all.size() && all[at] > 0) {
+        if (all[at + 1] == type && (third == kNoMatter || all[at + 2] == third)) return at;
+        at += all[at];
+    }
+    return all.size();
 }
 
 void malform(std::string_view name, std::uint8_t report, UsbReply& reply) {
@@ -82,6 +132,9 @@ std::string malformations() {
     list += ", " + std::string(kIdentShort);
     for (const Field& field : kFields) list += ", " + std::string(field.name);
     for (const Text& text : kTexts) list += ", " + std::string(text.name);
+    for (const RawText& text : kRawTexts) list += ", " + std::string(text.name);
+    for (const ConfigByte& byte : kConfigBytes) list += ", " + std::string(byte.name);
+    for (const std::string_view name : kDescriptors) list += ", " + std::string(name);
     return list;
 }
 
@@ -89,7 +142,39 @@ bool isMalformation(std::string_view name) {
     const auto named = [&](const auto& entry) { return entry.name == name; };
     return name == kIdentCrc || name == kIdentShort ||
            std::any_of(kFields.begin(), kFields.end(), named) ||
-           std::any_of(kTexts.begin(), kTexts.end(), named);
+           std::any_of(kTexts.begin(), kTexts.end(), named) ||
+           std::any_of(kRawTexts.begin(), kRawTexts.end(), named) || malformsDescriptors(name);
+}
+
+bool malformsDescriptors(std::string_view name) {
+    return std::find(kDescriptors.begin(), kDescriptors.end(), name) != kDescriptors.end() ||
+           std::any_of(kConfigBytes.begin(), kConfigBytes.end(), [&](const ConfigByte& byte) {
+               return byte.name == name;
+           });
+}
+
+void SpoiledAnswers::spoilDevice(std::vector<std::uint8_t>& descriptor) const {
+    constexpr std::size_t kSerialIndex = 16;
+    if (std::find(malformed_.begin(), malformed_.end(), kNoSerial) != malformed_.end())
+        descriptor[kSerialIndex] = 0;
+}
+
+void SpoiledAnswers::spoilConfig(std::vector<std::uint8_t>& descriptors) const {
+    constexpr std::size_t kTotal = 2, kEndpoints = 4;
+    for (const std::string& name : malformed_) {
+        if (name == kConfigTotal) descriptors[kTotal] = descriptors[kTotal + 1] = 0xFF;
+        if (name == kEndpointNone) {
+            const auto interface = placeOf(descriptors, kInterfaceType, usb::kStreamInterface);
+            descriptors[interface + kEndpoints] = 0;
+            descriptors.resize(placeOf(descriptors, kEndpointType, usb::kBulkIn));
+            descriptors[kTotal] = static_cast<std::uint8_t>(descriptors.size());
+            descriptors[kTotal + 1] = static_cast<std::uint8_t>(descriptors.size() >> 8);
+        }
+        for (const ConfigByte& byte : kConfigBytes) {
+            if (byte.name == name)
+                descriptors[placeOf(descriptors, byte.type, byte.third) + byte.offset] = byte.value;
+        }
+    }
 }
 
 bool SpoiledAnswers::put(const DueFault& fault) {
@@ -117,6 +202,11 @@ void SpoiledAnswers::spoil(const UsbSetup& setup, UsbReply& reply) const {
         }
     }
     if (setup.requestType != 0x80 || setup.request != kGetDescriptor || high != kStringType) return;
+    for (const RawText& text : kRawTexts) {
+        const bool wanted =
+            std::find(malformed_.begin(), malformed_.end(), text.name) != malformed_.end();
+        if (wanted && low == kSerialString) reply.data = {text.bytes.begin(), text.bytes.end()};
+    }
     if (low == kProtocolString)
         setText(reply, "GRP/" + std::to_string(major_) + "." + std::to_string(minor_));
     for (const Text& text : kTexts) {

@@ -1,5 +1,6 @@
 #pragma once
-// What a rig says of itself, made newer than its host, or nonsense: strings, IDENT and LIMITS.
+// What a rig says of itself, made newer than its host, or nonsense: descriptors, strings, IDENT and
+// LIMITS.
 
 #include <optional>
 #include <string>
@@ -14,12 +15,17 @@ namespace gonio::sim {
 /// What "malform" may be followed by, as a list for people.
 [[nodiscard]] std::string malformations();
 [[nodiscard]] bool isMalformation(std::string_view name);
+/// Of a descriptor that a host reads when the device is plugged in.
+[[nodiscard]] bool malformsDescriptors(std::string_view name);
 
 class SpoiledAnswers {
 public:
     /// False: it is no fault of answers. They stay spoiled.
     bool put(const DueFault& fault);
     void spoil(const UsbSetup& setup, UsbReply& reply) const;
+    void spoilDevice(std::vector<std::uint8_t>& descriptor) const;
+    void spoilConfig(std::vector<std::uint8_t>& descriptors) const;
+    [[nodiscard]] const std::vector<std::string>& malformed() const { return malformed_; }
 
 private:
     std::vector<std::string> malformed_;

@@ -1,10 +1,13 @@
-// Traffic of real devices of other kinds through the real USB code: whole, in order, and taken back
-// when the recorded host cancelled it; and their descriptors, none of which are a rig's.
+// Traffic of real devices of other kinds through the real USB code: whole, in order, behind what a
+// bus does to any device, and taken back in its midst and at its end, where the recorded host
+// cancelled it; and their descriptors, none of which are a rig's.
 
 #include <umockdev.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <deque>
 #include <fstream>
 #include <iterator>
 #include <numeric>
@@ -13,10 +16,12 @@
 #include "driver/assembler.h"
 #include "driver/hid_channel.h"
 #include "driver/usb_find.h"
+#include "driver/usb_ledger.h"
 #include "driver/usb_stream.h"
 #include "tests/device/foreign_traffic.h"
 #include "tests/device/usb_rig_fixture.h"
 #include "tests/support/data_file.h"
+#include "tests/support/wait_until.h"
 
 namespace gonio::device_test {
 namespace {
@@ -44,18 +49,22 @@ protected:
         return std::make_shared<driver::UsbStream>(std::move(*context), std::move(*opened));
     }
 
+    /// What the recorded host did not take back, as a rig would send it.
+    [[nodiscard]] static std::deque<sim::UsbReply> ended(const ForeignTraffic& traffic) {
+        std::deque<sim::UsbReply> transfers;
+        for (const ForeignTransfer& transfer : traffic.bulkIn) {
+            if (transfer.status == -ENOENT) continue;
+            EXPECT_EQ(transfer.status, 0);
+            transfers.push_back({.answer = sim::UsbAnswer::Done, .data = transfer.bytes});
+        }
+        return transfers;
+    }
+
     /// The transfers arrive as they were; then nothing does, and what is still in flight is taken
     /// back, as the recorded host did with its last ones.
     void expectWhole(const ForeignTraffic& traffic) {
-        std::deque<sim::UsbReply> transfers;
-        std::vector<const ForeignTransfer*> wanted;
-        for (const ForeignTransfer& transfer : traffic.bulkIn) {
-            if (transfer.status == -ENOENT) continue;
-            ASSERT_EQ(transfer.status, 0);
-            wanted.push_back(&transfer);
-            transfers.push_back({.answer = sim::UsbAnswer::Done, .data = transfer.bytes});
-        }
-        mock.sendInstead(std::move(transfers));
+        const auto wanted = ended(traffic);
+        mock.sendInstead(wanted);
         const auto reading = stream();
         ASSERT_TRUE(reading);
         ASSERT_TRUE(reading->start(kPayload));
@@ -63,9 +72,7 @@ protected:
         for (std::size_t i = 0; i < wanted.size(); ++i) {
             const auto came = reading->read(10s);
             ASSERT_TRUE(came && *came) << "transfer " << i;
-            EXPECT_TRUE(std::equal(
-                (*came)->begin(), (*came)->end(), wanted[i]->bytes.begin(), wanted[i]->bytes.end()))
-                << "transfer " << i;
+            EXPECT_TRUE(std::ranges::equal(**came, wanted[i].data)) << "transfer " << i;
             EXPECT_FALSE(assembler.feed(**came));
         }
         EXPECT_EQ(assembler.anomalies().total(), wanted.size()) << "none is a chunk";
@@ -74,6 +81,10 @@ protected:
         EXPECT_FALSE(*more);
         const auto counters = reading->counters();
         EXPECT_EQ(counters.stalls + counters.overflows + counters.errors, 0);
+        expectStopped(reading);
+    }
+
+    static void expectStopped(const std::shared_ptr<driver::UsbStream>& reading) {
         const auto begin = std::chrono::steady_clock::now();
         reading->askToStop();
         reading->awaitStop(begin + 5s);
@@ -115,6 +126,65 @@ TEST_F(ForeignStream, OfACameraIsWhole) {
     expectWhole(traffic);
 }
 
+/// Not in the recording: what a bus does to any device.
+TEST_F(ForeignStream, GoesOnBehindAStallAnOverflowAndAnError) {
+    const auto file = test::dataFile("usb_traces/nb1010.capture.ioctl");
+    if (!file) return;
+    const auto wanted = ended(readForeign(*file));
+    ASSERT_GT(wanted.size(), 80U);
+    auto sent = wanted;
+    using enum sim::UsbAnswer;
+    for (const auto& [before, answer] : {std::pair(80, Error), {50, Overflow}, {20, Stall}})
+        sent.insert(sent.begin() + before, {.answer = answer, .data = {}});
+    mock.sendInstead(std::move(sent));
+    const auto reading = stream();
+    ASSERT_TRUE(reading);
+    ASSERT_TRUE(reading->start(kPayload));
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+        const auto came = reading->read(10s);
+        ASSERT_TRUE(came && *came) << "transfer " << i;
+        EXPECT_TRUE(std::ranges::equal(**came, wanted[i].data)) << "transfer " << i;
+    }
+    // What came with the error may be read before the error is counted.
+    EXPECT_TRUE(test::waitUntil([&] { return reading->counters().errors == 1; }));
+    EXPECT_EQ(reading->counters().stalls, 1);
+    EXPECT_EQ(reading->counters().overflows, 1);
+    EXPECT_FALSE(reading->failure());
+    expectStopped(reading);
+}
+
+/// Each stream is stopped while the device goes on sending: what is in flight is taken back, what
+/// has come is still read, and the next stream begins with what was not sent yet.
+TEST_F(ForeignStream, TakenBackInItsMidstLosesAndDoublesNothing) {
+    const auto file = test::dataFile("usb_traces/canon-powershot-sx200.ioctl");
+    if (!file) return;
+    const auto wanted = ended(readForeign(*file));
+    mock.sendInstead(wanted);
+    constexpr std::size_t kStreams = 8;
+    std::size_t next = 0;
+    const auto take = [&](driver::UsbStream& reading, Nanoseconds wait) {
+        const auto came = reading.read(wait);
+        if (!came || !*came) return false;
+        if (next == wanted.size()) {
+            ADD_FAILURE() << "more than was sent";
+            return false;
+        }
+        EXPECT_TRUE(std::ranges::equal(**came, wanted[next].data)) << "transfer " << next;
+        ++next;
+        return true;
+    };
+    for (std::size_t i = 1; i <= kStreams; ++i) {
+        const auto reading = stream();
+        ASSERT_TRUE(reading);
+        ASSERT_TRUE(reading->start(kPayload));
+        while (next < i * wanted.size() / kStreams) ASSERT_TRUE(take(*reading, 10s)) << next;
+        expectStopped(reading);
+        while (take(*reading, 0s)) continue;
+        EXPECT_EQ(driver::usbLedger().transfersInFlight, 0);
+    }
+    EXPECT_EQ(next, wanted.size());
+}
+
 /// Vendor and product by the PRODUCT=V/P/R lines of a umockdev description.
 std::vector<driver::UsbSelection> idsIn(const std::string& description) {
     std::vector<driver::UsbSelection> ids;
@@ -154,6 +224,31 @@ TEST(ForeignDevice, IsNotTakenForARig) {
         }
     }
     EXPECT_GE(devices, 5);
+}
+
+/// Found by fuzzing: libusb counts endpoints that it has not read.
+TEST(ForeignDevice, WhoseDescriptorsEndTooSoonIsNoRig) {
+    auto descriptors = sim::usb::deviceDescriptor({}, sim::CameraKind::Usb2);
+    const auto config = sim::usb::configDescriptor(sim::CameraKind::Usb2);
+    descriptors.insert(descriptors.end(), config.begin(), config.end());
+    std::string text;
+    for (std::size_t length = 1; length <= descriptors.size(); ++length) {
+        const std::string number = std::to_string(length);
+        const std::string node = "bus/usb/001/" + std::string(3 - number.size(), '0') + number;
+        text += "P: /devices/usb1/1-" + number + "\nN: " + node +
+                "\nE: SUBSYSTEM=usb\nE: DEVTYPE=usb_device\nE: DEVNAME=/dev/" + node + "\n" +
+                "E: BUSNUM=001\nE: DEVNUM=" + number + "\nA: busnum=1\\n\nA: devnum=" + number +
+                "\\n\nA: speed=480\\n\nA: bConfigurationValue=1\\n\nA: serial=" + number +
+                "\\n\nH: descriptors=" + hex(std::span(descriptors).first(length)) + "\n\n";
+    }
+    const MockBus bus;
+    ASSERT_TRUE(umockdev_testbed_add_from_string(bus.testbed(), text.c_str(), nullptr));
+    const auto context = driver::makeUsbContext();
+    ASSERT_TRUE(context);
+    const auto rigs = driver::findRigs(context->get(), {});
+    ASSERT_TRUE(rigs) << rigs.error().message;
+    ASSERT_EQ(rigs->size(), 1U);
+    EXPECT_EQ(rigs->front().rig.serial, std::to_string(descriptors.size())) << "the whole one";
 }
 
 }  // namespace

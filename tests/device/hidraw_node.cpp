@@ -3,14 +3,14 @@
 #include <fcntl.h>
 #include <linux/hidraw.h>
 #include <linux/input.h>
-#include <poll.h>
 #include <sys/ioctl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstdlib>
+#include <stdexcept>
 #include <thread>
 
 namespace gonio::device_test {
@@ -22,58 +22,80 @@ using namespace std::chrono_literals;
 // seconds, but serves other nodes meanwhile; here one thread serves them all.)
 constexpr auto kKernelPatience = 1200ms;
 
-/// What nobody has read must not meet the next one who opens the node. A terminal hands on what was
-/// written a moment later, and a report of which half were left would shift all that follow.
-void discardUnread(int terminal) {
-    constexpr int kHandedOnMs = 10;
-    const char* name = ptsname(terminal);
-    if (!name) return;
-    const int other = ::open(name, O_RDONLY | O_NONBLOCK | O_NOCTTY);
-    if (other < 0) return;
+const sim::UsbReply kRefused{.answer = sim::UsbAnswer::Stall, .data = {}};
+// The queue of 63 that hidraw has, and what it loses, is in the rig (sim/notices.h), where it is
+// counted: more than that never waits here but where the reader sleeps.
+constexpr int kReportsKept = 512;
+
+/// What nobody has read must not meet the next one who opens the node.
+void discardUnread(int pipe) {
     std::array<char, 4096> bytes{};
-    pollfd waiting{.fd = other, .events = POLLIN, .revents = 0};
-    while (poll(&waiting, 1, kHandedOnMs) > 0 && ::read(other, bytes.data(), bytes.size()) > 0) {
+    while (::read(pipe, bytes.data(), bytes.size()) > 0) {
     }
-    ::close(other);
+}
+
+/// A pipe in the place of the terminal that umockdev has made.
+int makePipe(UMockdevTestbed* testbed, const std::string& path) {
+    gchar* root = umockdev_testbed_get_root_dir(testbed);
+    const std::string node = root + path;
+    g_free(root);
+    ::unlink(node.c_str());
+    if (::mkfifo(node.c_str(), 0600) != 0) throw std::runtime_error("no pipe at " + node);
+    const int pipe = ::open(node.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+    if (pipe < 0) throw std::runtime_error("cannot open " + node);
+    return pipe;
 }
 
 }  // namespace
 
 HidrawNode::HidrawNode(sim::LiveRig& live, UMockdevTestbed* testbed, std::string path)
-    : MockNode(testbed, std::move(path)), live_(live) {
+    : MockNode(live, testbed, std::move(path)) {
     g_signal_connect(handler(), "handle-ioctl", G_CALLBACK(onIoctl), this);
     g_signal_connect(handler(), "handle-write", G_CALLBACK(onWrite), this);
 }
 
-HidrawNode::~HidrawNode() { retire(); }
+HidrawNode::~HidrawNode() {
+    retire();
+    if (pipe_ >= 0) ::close(pipe_);
+}
 
 void HidrawNode::connect() {
-    terminal_ = umockdev_testbed_get_dev_fd(testbed(), path().c_str());
-    live_.listen([this](const std::vector<std::uint8_t>& report) {
-        // A full queue loses the newest, as hidraw does.
+    pipe_ = makePipe(testbed(), path());
+    live().listen([this](const std::vector<std::uint8_t>& report) {
+        if (report.empty()) {
+            halted_ = true;
+            return;
+        }
         int unread = 0;
         const std::scoped_lock whole(writing_);
-        if (!isOpen() || (ioctl(terminal_, TIOCOUTQ, &unread) == 0 && unread > 3500)) return;
-        (void)!::write(terminal_, report.data(), report.size());
+        const int most = kReportsKept * static_cast<int>(report.size());
+        if (!isOpen() || ioctl(pipe_, FIONREAD, &unread) != 0 || unread >= most) return;
+        (void)!::write(pipe_, report.data(), report.size());
     });
 }
 
+void HidrawNode::clearHalt() {
+    constexpr sim::UsbSetup kClear{.requestType = 2, .request = 1, .index = sim::usb::kInterruptIn};
+    if (halted_.exchange(false))
+        live().with([&](sim::FaultyUsb& usb) { (void)usb.control(kClear); });
+}
+
 void HidrawNode::pull(bool quietly) {
-    live_.listen({});
+    live().listen({});
     MockNode::pull(quietly);
 }
 
 void HidrawNode::firstOpened() {
     const std::scoped_lock whole(writing_);
-    discardUnread(terminal_);
+    discardUnread(pipe_);
 }
 
 void HidrawNode::opened() {
-    live_.with([](sim::FaultyUsb& usb) { usb.reportsOpened(); });
+    live().with([](sim::FaultyUsb& usb) { usb.reportsOpened(); });
 }
 
 bool HidrawNode::hung() const {
-    return live_.faults.hung || live_.with([](sim::FaultyUsb& usb) { return usb.hung(); });
+    return live().faults.hung || live().with([](sim::FaultyUsb& usb) { return usb.hung(); });
 }
 
 void HidrawNode::waitWhileHung() const {
@@ -95,8 +117,9 @@ gboolean HidrawNode::onWrite(UMockdevIoctlBase*, UMockdevIoctlClient* client, Hi
     self->waitWhileHung();
     int error = self->gone() ? ENODEV : self->hung() ? ETIMEDOUT : 0;
     if (error == 0) {
-        const auto reply =
-            self->live_.with([&](sim::FaultyUsb& usb) { return usb.interruptOut(report); });
+        const auto reply = self->live().with([&](sim::FaultyUsb& usb) {
+            return self->isAnothers(usb) ? kRefused : usb.interruptOut(report);
+        });
         if (reply.answer != sim::UsbAnswer::Done) error = EPIPE;
     }
     umockdev_ioctl_client_complete(client, error == 0 ? arg->data_len : -1, error);
@@ -139,8 +162,10 @@ int HidrawNode::feature(bool get, std::span<std::uint8_t> report) {
                               .value = static_cast<std::uint16_t>(kFeature | report[0]),
                               .index = sim::UsbDevice::kHidInterface,
                               .length = static_cast<std::uint16_t>(report.size())};
-    const auto reply = live_.with(
-        [&](sim::FaultyUsb& usb) { return get ? usb.control(setup) : usb.control(setup, report); });
+    const auto reply = live().with([&](sim::FaultyUsb& usb) {
+        if (isAnothers(usb)) return kRefused;
+        return get ? usb.control(setup) : usb.control(setup, report);
+    });
     if (reply.answer != sim::UsbAnswer::Done) return -EPIPE;
     std::copy(reply.data.begin(), reply.data.end(), report.begin());
     return get ? static_cast<int>(reply.data.size()) : static_cast<int>(report.size());

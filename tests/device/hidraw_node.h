@@ -1,8 +1,10 @@
 #pragma once
-// /dev/hidrawN: reports of a simulated rig. The node is a pseudo terminal, so that poll() works:
-// input reports are written into its other end while somebody has it open, as a kernel queues them
-// per open file.
+// /dev/hidrawN: reports of a simulated rig. The node is a pipe, so that poll() works and reports
+// stay whole, however late they are read (a terminal, which umockdev makes, hands out part of one
+// once 64 are unread): input reports are written into it while somebody has it open, as a kernel
+// queues them per open file.
 
+#include <atomic>
 #include <mutex>
 #include <string>
 
@@ -18,6 +20,8 @@ public:
     /// Call once the test bed has the node.
     void connect();
     void pull(bool quietly) override;
+    /// As usbhid does: the halt of a stalled endpoint is cleared. Not from within the rig.
+    void clearHalt();
 
 private:
     void firstOpened() override;
@@ -30,8 +34,8 @@ private:
     [[nodiscard]] bool hung() const;
     void waitWhileHung() const;
 
-    sim::LiveRig& live_;
-    int terminal_ = -1;
+    int pipe_ = -1;
+    std::atomic<bool> halted_{false};
     std::mutex writing_;  ///< reports go into it whole
 };
 

@@ -14,6 +14,14 @@ namespace {
 
 using namespace std::chrono_literals;
 
+std::string owned(gchar* text) {
+    std::string copy = text;
+    g_free(text);
+    return copy;
+}
+
+}  // namespace
+
 std::string hex(std::span<const std::uint8_t> bytes) {
     constexpr const char* kDigits = "0123456789ABCDEF";
     std::string text;
@@ -23,14 +31,6 @@ std::string hex(std::span<const std::uint8_t> bytes) {
     }
     return text;
 }
-
-std::string owned(gchar* text) {
-    std::string copy = text;
-    g_free(text);
-    return copy;
-}
-
-}  // namespace
 
 MockBus::MockBus() : testbed_(umockdev_testbed_new()) {
     if (!umockdev_in_mock_environment()) throw std::runtime_error("run under umockdev-wrapper");
@@ -141,6 +141,7 @@ void MockRig::watchTheCable() {
     });
     if (usbfs_ && (!plugged || pulls != pulls_)) takeDown(quietly);
     if (!usbfs_ && plugged) putUp();
+    if (hidraw_) hidraw_->clearHalt();
     for (const auto& node : pulled_) node->settle();
 }
 

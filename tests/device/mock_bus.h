@@ -6,6 +6,7 @@
 #include <deque>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
@@ -19,6 +20,9 @@ namespace gonio::device_test {
 class HidrawNode;
 class MockNode;
 class UsbfsNode;
+
+/// As descriptions of devices have bytes: "0A1F".
+[[nodiscard]] std::string hex(std::span<const std::uint8_t> bytes);
 
 class MockBus {
 public:
@@ -52,6 +56,8 @@ public:
     void unplug();
     /// The stream brings these transfers and then none, whatever the rig has.
     void sendInstead(std::deque<sim::UsbReply> transfers);
+    /// What a script has done to the cable by now has happened to the nodes.
+    void settle() { watchTheCable(); }
     /// Those who had the pulled nodes open have closed them.
     void forgetPulled();
     [[nodiscard]] sim::LiveRig& live() { return live_; }

@@ -8,8 +8,12 @@ namespace gonio::device_test {
 
 using namespace std::chrono_literals;
 
-MockNode::MockNode(UMockdevTestbed* testbed, std::string path)
-    : testbed_(testbed), path_(std::move(path)), handler_(umockdev_ioctl_base_new()) {
+MockNode::MockNode(sim::LiveRig& live, UMockdevTestbed* testbed, std::string path)
+    : live_(live),
+      pulls_(live.with([](sim::FaultyUsb& usb) { return usb.pulls(); })),
+      testbed_(testbed),
+      path_(std::move(path)),
+      handler_(umockdev_ioctl_base_new()) {
     g_signal_connect(handler_, "client-connected", G_CALLBACK(onOpen), this);
     umockdev_testbed_attach_ioctl(testbed_, path_.c_str(), handler_, nullptr);
 }

@@ -10,11 +10,13 @@
 #include <string>
 #include <vector>
 
+#include "sim/live_rig.h"
+
 namespace gonio::device_test {
 
 class MockNode {
 public:
-    MockNode(UMockdevTestbed* testbed, std::string path);
+    MockNode(sim::LiveRig& live, UMockdevTestbed* testbed, std::string path);
     /// Waits until nobody has it open, one second at most.
     virtual ~MockNode();
     MockNode(const MockNode&) = delete;
@@ -31,6 +33,11 @@ protected:
     [[nodiscard]] const std::string& path() const { return path_; }
     [[nodiscard]] bool isOpen();
     [[nodiscard]] bool gone() const { return gone_; }
+    [[nodiscard]] sim::LiveRig& live() const { return live_; }
+    /// Another rig is at the plug by now, or this one again: its node is another.
+    [[nodiscard]] bool isAnothers(const sim::FaultyUsb& usb) const {
+        return usb.plugged() && usb.pulls() != pulls_;
+    }
     /// Somebody opens it whom nobody came before.
     virtual void firstOpened() {}
     /// Somebody opens it: also one who closed it so lately that it still looks open.
@@ -42,6 +49,8 @@ private:
     void detach();
     static void onOpen(UMockdevIoctlBase*, UMockdevIoctlClient* client, MockNode* self);
 
+    sim::LiveRig& live_;
+    int pulls_;  ///< of the cable when it was made
     UMockdevTestbed* testbed_;
     std::string path_;
     UMockdevIoctlBase* handler_;

@@ -12,7 +12,7 @@ TEST_F(UsbStreaming, AllocatesNothingAfterArmOnEitherThread) {
     mock.live().warmUp(kSmallWindow);
     const auto transport = opened();
     ASSERT_TRUE(transport);
-    driver::test::WatchedTransport watched(*transport, true);
+    driver::test::AllocationWatch watched(*transport, true);
     auto rig = driver::Rig::open(watched, kSession);
     ASSERT_TRUE(rig) << rig.error().message;
     ASSERT_TRUE(rig->configure(kSmallWindow));

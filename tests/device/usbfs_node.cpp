@@ -45,6 +45,8 @@ int statusOf(sim::UsbAnswer answer) {
     }
 }
 
+const sim::UsbReply kNothing{.answer = sim::UsbAnswer::Nak, .data = {}};
+
 bool takeOne(std::atomic<int>& counter) {
     if (counter <= 0) return false;
     --counter;
@@ -54,7 +56,7 @@ bool takeOne(std::atomic<int>& counter) {
 }  // namespace
 
 UsbfsNode::UsbfsNode(sim::LiveRig& live, UMockdevTestbed* testbed, std::string path)
-    : MockNode(testbed, std::move(path)), live_(live) {
+    : MockNode(live, testbed, std::move(path)) {
     g_signal_connect(handler(), "handle-ioctl", G_CALLBACK(onIoctl), this);
 }
 
@@ -122,7 +124,7 @@ int UsbfsNode::answer(UMockdevIoctlClient* client) {
         }
         return reap(client, arg);
     }
-    if (request == USBDEVFS_RESET) ++live_.faults.portResets;
+    if (request == USBDEVFS_RESET) ++live().faults.portResets;
     if (gone()) return ENODEV;
     switch (request) {
         case USBDEVFS_GET_CAPABILITIES:
@@ -139,11 +141,11 @@ int UsbfsNode::answer(UMockdevIoctlClient* client) {
         case USBDEVFS_SUBMITURB: return submit(client, arg);
         case USBDEVFS_DISCARDURB: return discard(arg);
         case USBDEVFS_SETINTERFACE: return setInterface(arg);
-        case USBDEVFS_RESET: live_.with([](sim::FaultyUsb& usb) { usb.resetPort(); }); return 0;
+        case USBDEVFS_RESET: live().with([](sim::FaultyUsb& usb) { usb.resetPort(); }); return 0;
         case USBDEVFS_CLEAR_HALT: {
             const sim::UsbSetup clear{
                 .requestType = 2, .request = 1, .index = sim::UsbDevice::kBulkIn};
-            live_.with([&](sim::FaultyUsb& usb) { return usb.control(clear); });
+            live().with([&](sim::FaultyUsb& usb) { return usb.control(clear); });
             return 0;
         }
         default: return ENOTTY;
@@ -152,7 +154,7 @@ int UsbfsNode::answer(UMockdevIoctlClient* client) {
 
 int UsbfsNode::claim(UMockdevIoctlClient* client, int interface) {
     const auto owner = claims_.find(interface);
-    if (live_.faults.claimed || (owner != claims_.end() && owner->second != client)) return EBUSY;
+    if (live().faults.claimed || (owner != claims_.end() && owner->second != client)) return EBUSY;
     if (owner == claims_.end())
         claims_.emplace(interface, UMOCKDEV_IOCTL_CLIENT(g_object_ref(client)));
     return 0;
@@ -172,7 +174,7 @@ int UsbfsNode::setInterface(UMockdevIoctlData* arg) {
                             .request = 11,
                             .value = static_cast<std::uint16_t>(wanted.altsetting),
                             .index = static_cast<std::uint16_t>(wanted.interface)};
-    const auto reply = live_.with([&](sim::FaultyUsb& usb) { return usb.control(set); });
+    const auto reply = live().with([&](sim::FaultyUsb& usb) { return usb.control(set); });
     return reply.answer == sim::UsbAnswer::Done ? 0 : EPIPE;
 }
 
@@ -184,7 +186,7 @@ int UsbfsNode::submit(UMockdevIoctlClient* client, UMockdevIoctlData* arg) {
             .reply = {},
             .status = 0};
     if (urbOf(data).type == USBDEVFS_URB_TYPE_CONTROL) {
-        if (live_.faults.hung || !runControl(urb)) {
+        if (live().faults.hung || !runControl(urb)) {
             waiting_.push_back(urb);
         } else {
             done_.push_back(urb);
@@ -201,8 +203,8 @@ int UsbfsNode::submit(UMockdevIoctlClient* client, UMockdevIoctlData* arg) {
 }
 
 int UsbfsNode::mostTransfers() {
-    const int most = live_.with([](sim::FaultyUsb& usb) { return usb.mostTransfers(); });
-    return std::min(most, live_.faults.mostTransfers.load());
+    const int most = live().with([](sim::FaultyUsb& usb) { return usb.mostTransfers(); });
+    return std::min(most, live().faults.mostTransfers.load());
 }
 
 /// False: the rig does not answer it.
@@ -218,8 +220,9 @@ bool UsbfsNode::runControl(Urb& urb) {
                               .value = word(2),
                               .index = word(4),
                               .length = word(6)};
-    urb.reply =
-        live_.with([&](sim::FaultyUsb& usb) { return usb.control(setup, bytes.subspan(kSetup)); });
+    urb.reply = live().with([&](sim::FaultyUsb& usb) {
+        return isAnothers(usb) ? kNothing : usb.control(setup, bytes.subspan(kSetup));
+    });
     if (urb.reply.answer == sim::UsbAnswer::Nak) return false;
     if (urb.reply.answer != sim::UsbAnswer::Done) urb.status = statusOf(urb.reply.answer);
     std::copy(urb.reply.data.begin(), urb.reply.data.end(), bytes.begin() + kSetup);
@@ -245,7 +248,7 @@ void UsbfsNode::sendInstead(std::deque<sim::UsbReply> transfers) {
 }
 
 sim::UsbReply UsbfsNode::nextForeign() {
-    if (foreign_->empty()) return {.answer = sim::UsbAnswer::Nak, .data = {}};
+    if (foreign_->empty()) return kNothing;
     sim::UsbReply reply = std::move(foreign_->front());
     foreign_->pop_front();
     return reply;
@@ -253,23 +256,24 @@ sim::UsbReply UsbfsNode::nextForeign() {
 
 /// Ends the oldest bulk transfer if the rig has something for it.
 bool UsbfsNode::advanceBulk() {
-    if (live_.faults.hung || waiting_.empty()) return false;
+    if (live().faults.hung || waiting_.empty()) return false;
     Urb& urb = waiting_.front();
     const auto length = static_cast<std::size_t>(urbOf(urb.data).buffer_length);
     bool wholePackets = true;
-    urb.reply = live_.with([&](sim::FaultyUsb& usb) {
+    urb.reply = live().with([&](sim::FaultyUsb& usb) {
         wholePackets = length % usb.bulkPacket() == 0;
+        if (isAnothers(usb)) return kNothing;
         return foreign_ ? nextForeign() : usb.bulkIn(length);
     });
     if (urb.reply.answer == sim::UsbAnswer::Nak) return false;
     if (urb.reply.answer != sim::UsbAnswer::Done) {
         urb.status = statusOf(urb.reply.answer);
-    } else if (takeOne(live_.faults.overflow) || !wholePackets) {
+    } else if (takeOne(live().faults.overflow) || !wholePackets) {
         // A buffer that ends inside a packet has no room for a full one.
         urb.status = -EOVERFLOW;
-    } else if (takeOne(live_.faults.protocolErrors)) {
+    } else if (takeOne(live().faults.protocolErrors)) {
         urb.status = -EPROTO;
-    } else if (takeOne(live_.faults.shorten)) {
+    } else if (takeOne(live().faults.shorten)) {
         urb.reply.data.resize(urb.reply.data.size() / 2);
     }
     if (urb.status != 0) urb.reply.data.clear();
@@ -279,7 +283,7 @@ bool UsbfsNode::advanceBulk() {
 }
 
 int UsbfsNode::reap(UMockdevIoctlClient* client, UMockdevIoctlData* arg) {
-    const bool keeps = live_.faults.keepsCancelled;
+    const bool keeps = live().faults.keepsCancelled;
     const auto first = std::find_if(done_.begin(), done_.end(), [&](const Urb& urb) {
         return urb.client == client && !(keeps && urb.status == -ENOENT);
     });

@@ -48,7 +48,6 @@ private:
     static void forget(std::deque<Urb>& urbs);
     void forgetTheDead();
 
-    sim::LiveRig& live_;
     std::mutex mutex_;
     std::deque<Urb> waiting_, done_;
     std::map<int, UMockdevIoctlClient*> claims_;  ///< who has an interface

@@ -25,10 +25,10 @@ public:
 };
 
 /// A transport that starts the watching with each ARM that goes through it.
-class WatchedTransport : public Transport {
+class AllocationWatch : public Transport {
 public:
     /// `ourBulk`: reading from the stream is the driver's work too, not the simulator's.
-    WatchedTransport(Transport& inner, bool ourBulk) : inner_(inner), ourBulk_(ourBulk) {}
+    AllocationWatch(Transport& inner, bool ourBulk) : inner_(inner), ourBulk_(ourBulk) {}
 
     [[nodiscard]] DeviceStrings strings() const override { return inner_.strings(); }
     [[nodiscard]] const Clock& clock() const override { return inner_.clock(); }

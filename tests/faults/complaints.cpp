@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <initializer_list>
+#include <vector>
 
 #include "tests/faults/measurement.h"
 
@@ -14,7 +14,7 @@ using sim::FaultKind;
 /// What the driver counts exactly of what was done to its stream.
 struct Law {
     const char* counter;
-    std::initializer_list<FaultKind> causes;
+    std::vector<FaultKind> causes;
 };
 const std::array kLaws{
     Law{"emptyTransfers", {FaultKind::EmptyPacket}},
@@ -39,6 +39,10 @@ const std::array kLaws{
     Law{"missedEvents", {}},
 };
 
+/// What a request may take (a second until it gives up) or a read beyond its wait, and a port
+/// reset.
+constexpr Nanoseconds kCall = std::chrono::milliseconds(1100);
+
 int countOf(const Outcome& outcome, const std::string& name) {
     const auto found = outcome.counts.find(name);
     return found == outcome.counts.end() ? 0 : found->second;
@@ -53,6 +57,25 @@ bool holds(int seen, const WantedCount& wanted) {
 template <class T>
 bool has(const std::vector<T>& all, const T& one) {
     return std::find(all.begin(), all.end(), one) != all.end();
+}
+
+std::string milliseconds(Nanoseconds time) {
+    return std::to_string(std::chrono::duration<double, std::milli>(time).count()) + " ms";
+}
+
+/// The refusal is for what is malformed, and says so in one line.
+void compareMalformed(const Row& row, const Outcome& outcome, std::vector<std::string>& list) {
+    if (row.saysWhen.empty()) return;
+    if (outcome.malformed.empty()) list.emplace_back("nothing was malformed");
+    for (const std::string& name : outcome.malformed) {
+        const auto wanted = row.saysWhen.find(name);
+        if (wanted == row.saysWhen.end()) {
+            list.push_back("what is said when " + name + "?");
+        } else if (outcome.said.find(wanted->second) == std::string::npos) {
+            list.push_back(name + ": nobody says " + wanted->second);
+        }
+    }
+    if (outcome.said.find('\n') != std::string::npos) list.emplace_back("it says several lines");
 }
 
 /// Every frame that was kept is the undisturbed one's equal, and a measurement that says it is
@@ -70,7 +93,11 @@ void comparePictures(const Outcome& outcome,
 }
 
 void compareCounts(const Row& row, const Outcome& outcome, std::vector<std::string>& list) {
+    for (const auto& [name, value] : outcome.counts) {
+        if (!isCounter(name) && !name.starts_with("did ")) list.push_back("who is " + name + "?");
+    }
     for (const WantedCount& count : row.counts) {
+        if (!outcome.counts.contains(count.name)) list.push_back("nobody counts " + count.name);
         const int seen = countOf(outcome, count.name);
         if (!holds(seen, count))
             list.push_back(count.name + " is " + std::to_string(seen) + ", wanted " +
@@ -81,9 +108,19 @@ void compareCounts(const Row& row, const Outcome& outcome, std::vector<std::stri
         for (const FaultKind kind : law.causes)
             caused += countOf(outcome, "did " + std::string(sim::faultName(kind)));
         const int seen = countOf(outcome, law.counter);
-        if (seen != caused && !has(row.waived, std::string(law.counter)))
-            list.push_back(std::string(law.counter) + " is " + std::to_string(seen) + ", caused " +
-                           std::to_string(caused));
+        const auto waived = row.waived.find(law.counter);
+        const int more = waived == row.waived.end() ? 0 : waived->second;
+        if (seen == caused + more) continue;
+        list.push_back(std::string(law.counter) + " is " + std::to_string(seen) + ", caused " +
+                       std::to_string(caused) +
+                       (more != 0 ? ", waived " + std::to_string(more) : ""));
+    }
+    for (const auto& [name, more] : row.waived) {
+        const bool ofLaw =
+            std::any_of(kLaws.begin(), kLaws.end(), [&, &name = name](const Law& law) {
+                return name == law.counter;
+            });
+        if (!ofLaw) list.push_back("waived " + name + ", of which there is no law");
     }
 }
 
@@ -93,6 +130,11 @@ std::vector<std::string> complaints(const Row& row,
                                     const Outcome& outcome,
                                     const Pictures& undisturbed) {
     std::vector<std::string> list = outcome.troubles;
+    const auto compareTime = [&](const char* what, Nanoseconds limit, Nanoseconds seen) {
+        if (limit == Nanoseconds(0)) return;
+        if (seen == Nanoseconds(0)) list.push_back(std::string("no time ") + what);
+        if (seen > limit * outcome.slack) list.push_back(milliseconds(seen) + " " + what);
+    };
     if (outcome.verdict != row.verdict)
         list.push_back("the verdict is " + outcome.verdict + ", wanted " + row.verdict);
     for (const std::string& text : row.says) {
@@ -101,9 +143,12 @@ std::vector<std::string> complaints(const Row& row,
     for (const int code : row.events) {
         if (!has(outcome.events, code)) list.push_back("no event " + std::to_string(code));
     }
-    if (row.detected > Nanoseconds(0) && outcome.detected > row.detected)
-        list.push_back("the loss was seen after " +
-                       std::to_string(outcome.detected.count() / 1'000'000) + " ms");
+    compareMalformed(row, outcome, list);
+    compareTime("from the pulled cable to the comeback", row.detected, outcome.detected);
+    compareTime("from the plug to the claim", row.reclaimed, outcome.reclaimed);
+    compareTime("from silence to reports opened anew", row.noticed, outcome.noticed);
+    if (outcome.longestCall > kCall * outcome.slack)
+        list.push_back("a call went on " + milliseconds(outcome.longestCall) + " past its wait");
     comparePictures(outcome, undisturbed, list);
     compareCounts(row, outcome, list);
     if (!list.empty() && !outcome.said.empty()) list.push_back("said: " + outcome.said);

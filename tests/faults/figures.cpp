@@ -24,15 +24,22 @@ void Figures::add(const Outcome& outcome, bool passed) {
     interruptions_ += countOf(outcome, "interruptions");
     repeats_ += countOf(outcome, "repeats");
     detected_ = std::max(detected_, outcome.detected);
+    reclaimed_ = std::max(reclaimed_, outcome.reclaimed);
+    noticed_ = std::max(noticed_, outcome.noticed);
+    call_ = std::max(call_, outcome.longestCall);
 }
 
 Figures::~Figures() {
     const char* file = std::getenv("GONIO_FAULT_FIGURES");
     if (!file || seeds_ == 0) return;
+    const auto ms = [](Nanoseconds time) {
+        return std::chrono::duration<double, std::milli>(time).count();
+    };
     std::ofstream(file, std::ios::app)
         << row_ << ',' << door_ << ',' << seeds_ << ',' << passed_ << ',' << verdict_ << ','
-        << std::chrono::duration<double, std::milli>(detected_).count() << ',' << chunksResent_
-        << ',' << framesRedone_ << ',' << interruptions_ << ',' << repeats_ << '\n';
+        << ms(detected_) << ',' << ms(reclaimed_) << ',' << ms(noticed_) << ',' << ms(call_) << ','
+        << chunksResent_ << ',' << framesRedone_ << ',' << interruptions_ << ',' << repeats_
+        << '\n';
 }
 
 }  // namespace gonio::fault_test

@@ -22,7 +22,7 @@ private:
     std::string row_, door_, verdict_;
     int seeds_ = 0, passed_ = 0;
     long chunksResent_ = 0, framesRedone_ = 0, interruptions_ = 0, repeats_ = 0;
-    Nanoseconds detected_{0};  ///< the longest
+    Nanoseconds detected_{0}, reclaimed_{0}, noticed_{0}, call_{0};  ///< the longest
 };
 
 }  // namespace gonio::fault_test

@@ -35,6 +35,7 @@ public:
     Result<void> resetStream() override { return door_->resetStream(); }
     Result<void> reopenReports() override { return door_->reopenReports(); }
     Result<void> resetPort() override { return door_->resetPort(); }
+    [[nodiscard]] const sim::InProcessDoor::Counters& counters() const { return door_->counters(); }
 
 private:
     bool over() { return callsLeft_ == 0 || --callsLeft_ == 0; }
@@ -57,6 +58,11 @@ public:
         return door_.get();
     }
     void close() override { door_.reset(); }
+    [[nodiscard]] Ring ring() override {
+        if (!door_) return {};
+        return {.allowed = door_->counters().ring, .inFlight = door_->counters().inFlight};
+    }
+    [[nodiscard]] int slack() const override { return 1; }
     void pause(Nanoseconds time) override { first_.usb().advanceTo(first_.usb().now() + time); }
     void with(const std::function<void(sim::FaultyUsb&)>& use) override { use(first_.usb()); }
 

@@ -1,6 +1,11 @@
 #include "tests/faults/measurement.h"
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
 #include <optional>
+#include <utility>
 
 #include "driver/rig.h"
 #include "sim/in_process.h"
@@ -28,21 +33,93 @@ CaptureRequest requestOf(int bracket, int exposure) {
             .frames = kFrames};
 }
 
+/// Passes all on, and measures how long each call goes on past what it was to wait.
+class CallWatch : public driver::Transport {
+public:
+    driver::Transport* watch(driver::Transport* inner) {
+        inner_ = inner;
+        return this;
+    }
+    [[nodiscard]] Nanoseconds longest() const { return longest_; }
+
+    [[nodiscard]] driver::DeviceStrings strings() const override { return inner_->strings(); }
+    [[nodiscard]] const Clock& clock() const override { return inner_->clock(); }
+    Result<void> write(const driver::Report& report) override {
+        return timed(0ns, [&] { return inner_->write(report); });
+    }
+    Result<void> setFeature(const driver::Report& report) override {
+        return timed(0ns, [&] { return inner_->setFeature(report); });
+    }
+    Result<driver::Report> getFeature(std::uint8_t id) override {
+        return timed(0ns, [&] { return inner_->getFeature(id); });
+    }
+    Result<std::optional<driver::Report>> readInput(Nanoseconds wait) override {
+        return timed(wait, [&] { return inner_->readInput(wait); });
+    }
+    Result<std::optional<driver::BulkBytes>> readBulk(Nanoseconds wait) override {
+        return timed(wait, [&] { return inner_->readBulk(wait); });
+    }
+    Result<void> resetStream() override {
+        return timed(0ns, [&] { return inner_->resetStream(); });
+    }
+    Result<void> reopenReports() override {
+        return timed(0ns, [&] { return inner_->reopenReports(); });
+    }
+    Result<void> resetPort() override {
+        return timed(0ns, [&] { return inner_->resetPort(); });
+    }
+
+private:
+    template <class Call>
+    auto timed(Nanoseconds wait, Call call) -> decltype(call()) {
+        const Nanoseconds begin = clock().now();
+        auto done = call();
+        longest_ = std::max(longest_, clock().now() - begin - wait);
+        return done;
+    }
+    driver::Transport* inner_ = nullptr;
+    Nanoseconds longest_{0};
+};
+
+/// What is written to stderr while it lives: the log.
+class LogCatcher {
+public:
+    LogCatcher() { testing::internal::CaptureStderr(); }
+    ~LogCatcher() { (void)taken(); }
+    LogCatcher(const LogCatcher&) = delete;
+    LogCatcher& operator=(const LogCatcher&) = delete;
+    std::string taken() {
+        if (std::exchange(done_, true)) return {};
+        std::string text = testing::internal::GetCapturedStderr();
+        fputs(text.c_str(), stderr);
+        return text;
+    }
+
+private:
+    bool done_ = false;
+};
+
 /// Looks for a rig that was lost until it is back, or for so long.
 class Search {
 public:
-    Search(RigDoor& door, Outcome& outcome, int mostComebacks)
-        : door_(door), outcome_(outcome), left_(mostComebacks) {}
+    /// `calls` may be null.
+    Search(RigDoor& door, CallWatch* calls, Outcome& outcome, const SearchLimits& limits)
+        : door_(door),
+          watch_(calls),
+          outcome_(outcome),
+          left_(limits.comebacks),
+          each_(limits.each) {}
 
     Result<driver::Transport*> operator()(const Error& lost) {
         outcome_.said += lost.message + "\n";
         outcome_.detected = std::max(outcome_.detected, sinceUnseenPull());
         if (left_-- == 0) return gaveUp("it was lost again and again");
-        for (const Nanoseconds end = door_.now() + kGiveUp; door_.now() < end;) {
+        for (const Nanoseconds end = door_.now() + each_; door_.now() < end;) {
             door_.close();
             door_.pause(kLook);
             door_.with([this](sim::FaultyUsb& usb) { pulls_ = usb.pulls(); });
             auto opened = door_.open();
+            if (opened && watch_) return watch_->watch(*opened);
             if (opened) return opened;
             outcome_.said += opened.error().message + "\n";
         }
@@ -60,9 +137,11 @@ private:
         return since;
     }
     RigDoor& door_;
+    CallWatch* watch_;
     Outcome& outcome_;
     int pulls_ = 0;
     int left_;
+    Nanoseconds each_;
 };
 
 /// Its pictures; empty: it must be redone, for the rig has rebooted.
@@ -117,14 +196,29 @@ void count(const driver::Anomalies& seen, const driver::LinkCounters& link, Outc
     add("foreignAcks", link.foreignAcks);
     add("repeats", link.repeats);
     add("lostStatuses", link.lostStatuses);
+    add("statusesUnexplained", link.lostStatuses);
     add("missedEvents", link.missedEvents);
 }
 
 /// Of the rig itself. What it had done before the script began is taken off.
-void addStats(const driver::Stats& stats, int sign, Outcome& outcome) {
+void addStats(sim::FaultyUsb& usb, int sign, Outcome& outcome) {
+    const driver::Stats& stats = usb.device().stats();
+    const auto& overflow = usb.device().overflow();
+    outcome.counts["reportsOverflowed"] += sign * overflow.reports;
+    // Less those that did not reach the driver.
+    outcome.counts["statusesUnexplained"] -=
+        sign * (overflow.statuses + usb.reports().statusesLost());
+    outcome.counts["portResets"] += sign * usb.portResets();
+    outcome.counts["haltsCleared"] += sign * usb.reports().haltsCleared();
     outcome.counts["framesMade"] += sign * static_cast<int>(stats.framesMade);
     outcome.counts["chunksResent"] += sign * static_cast<int>(stats.resends);
     outcome.counts["replays"] += sign * static_cast<int>(stats.replays);
+}
+
+bool asks(const Row& row, const std::string& counter) {
+    return std::any_of(row.counts.begin(), row.counts.end(), [&](const WantedCount& count) {
+        return count.name == counter;
+    });
 }
 
 /// Of the script. What other scripts had done before is taken off.
@@ -142,13 +236,23 @@ void judgeError(const Error& error, Outcome& outcome) {
 }
 
 /// The measurement on a rig that could be opened.
-void run(RigDoor& door, const RigSetup& setup, Rig& rig, Outcome& outcome) {
+void run(RigDoor& door,
+         CallWatch& calls,
+         const RigSetup& setup,
+         const Row& row,
+         Rig& rig,
+         Outcome& outcome) {
     constexpr int kMostComebacks = 60;
-    rig.onLost(comebackThrough(door, outcome, kMostComebacks));
+    outcome.counts["bracketsRedone"] = outcome.counts["deviceStatus"] = 0;
+    rig.onLost(Search(door, &calls, outcome, {.comebacks = kMostComebacks, .each = kGiveUp}));
     Result<void> done = rig.configure(setup.window);
     if (done) done = takeAll(rig, outcome);
     outcome.verdict = "completed";
     if (!done) judgeError(done.error(), outcome);
+    // The last of those that were lost is known only when another one has come.
+    if (done && asks(row, "statusesUnexplained")) (void)rig.link().freshStatus();
+    // What the last chunk lay in is in flight again when another one is asked for.
+    if (done && asks(row, "inFlight")) (void)rig.link().readBulk(0ns);
     rig.onLost({});
     readBack(rig, door, outcome);
     (void)rig.close();
@@ -169,15 +273,16 @@ bool goesDark(RigDoor& door) {
 
 }  // namespace
 
-driver::Comeback comebackThrough(RigDoor& door, Outcome& outcome, int most) {
-    return Search(door, outcome, most);
+driver::Comeback comebackThrough(RigDoor& door, Outcome& outcome, const SearchLimits& limits) {
+    return Search(door, nullptr, outcome, limits);
 }
 
 void beginScript(RigDoor& door, const sim::FaultScript& script, Outcome& outcome) {
     door.with([&](sim::FaultyUsb& usb) {
-        addStats(usb.device().stats(), -1, outcome);
+        addStats(usb, -1, outcome);
         addFaults(usb.tally(), -1, outcome);
         usb.play(script);
+        outcome.malformed = usb.malformed();
     });
 }
 
@@ -191,9 +296,13 @@ void noteInterruptions(Rig& rig, Outcome& outcome) {
 }
 
 void readBack(Rig& rig, RigDoor& door, Outcome& outcome) {
+    outcome.counts["eventGaps"] += 0;
+    for (const char* name : {"interruptions", "resent", "redone", "otherBoots"})
+        outcome.counts[name] += 0;
     const auto events = rig.link().takeEvents();
     if (events) {
         for (const driver::Event& event : *events) outcome.events.push_back(event.code);
+        outcome.counts["events"] = static_cast<int>(events->size());
         for (std::size_t i = 1; i < events->size(); ++i) {
             if ((*events)[i].sequence != (*events)[i - 1].sequence + 1)
                 ++outcome.counts["eventGaps"];
@@ -207,20 +316,29 @@ void readBack(Rig& rig, RigDoor& door, Outcome& outcome) {
         outcome.troubles.emplace_back("an event was missed, or told twice");
     outcome.counts["reopens"] += static_cast<int>(rig.link().reopens());
     count(rig.anomalies(), rig.link().counters(), outcome);
+    const RigDoor::Ring ring = door.ring();
+    outcome.counts["ring"] = ring.allowed;
+    outcome.counts["inFlight"] = ring.inFlight;
+    outcome.counts["steps"] = static_cast<int>(outcome.pictures.size());
     door.with([&](sim::FaultyUsb& usb) {
-        addStats(usb.device().stats(), 1, outcome);
+        addStats(usb, 1, outcome);
+        outcome.reclaimed = usb.reclaimed();
+        outcome.noticed = usb.reports().noticed();
         addFaults(usb.tally(), 1, outcome);
     });
 }
 
 Outcome measure(RigDoor& door, const RigSetup& setup, const Row& row) {
     Outcome outcome;
+    outcome.slack = door.slack();
+    LogCatcher log;
+    CallWatch calls;
     beginScript(door, row.script, outcome);
     const Nanoseconds begin = door.now();
     const auto transport = door.open();
     if (transport) {
-        if (auto rig = Rig::open(**transport, kSession)) {
-            run(door, setup, *rig, outcome);
+        if (auto rig = Rig::open(*calls.watch(*transport), kSession)) {
+            run(door, calls, setup, row, *rig, outcome);
         } else {
             outcome.verdict = "refused";
             outcome.said += rig.error().message;
@@ -230,6 +348,8 @@ Outcome measure(RigDoor& door, const RigSetup& setup, const Row& row) {
         outcome.said += transport.error().message;
     }
     door.close();
+    outcome.longestCall = calls.longest();
+    outcome.said += log.taken();
     if (door.now() - begin > kLongest) outcome.troubles.emplace_back("it took too long");
     if (!goesDark(door)) outcome.troubles.emplace_back("an LED is still lit");
     return outcome;

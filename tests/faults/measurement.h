@@ -23,7 +23,12 @@ struct Outcome {
     std::map<std::string, int> counts;
     std::vector<int> events;            ///< their codes
     std::vector<std::string> troubles;  ///< what no row may show
-    Nanoseconds detected{0};            ///< the longest
+    std::vector<std::string> malformed;
+    Nanoseconds detected{0};     ///< the longest; likewise those that follow
+    Nanoseconds reclaimed{0};    ///< from the plug to the claim
+    Nanoseconds noticed{0};      ///< from silent reports to their opening
+    Nanoseconds longestCall{0};  ///< of the transport, beyond what it was to wait
+    int slack = 1;               ///< how many times a limit may last
 };
 
 [[nodiscard]] Outcome measure(RigDoor& door, const RigSetup& setup, const Row& row);
@@ -34,9 +39,15 @@ struct Outcome {
 
 /// The script's time begins; what the rig and other scripts did before is not counted.
 void beginScript(RigDoor& door, const sim::FaultScript& script, Outcome& outcome);
-/// Looks for a lost rig until it is back, for 2.5 s each time, so many times. Says in the outcome
-/// what it was told. Both are borrowed.
-[[nodiscard]] driver::Comeback comebackThrough(RigDoor& door, Outcome& outcome, int most);
+/// How often a lost rig is looked for, and how long each time.
+struct SearchLimits {
+    int comebacks = 0;
+    Nanoseconds each{0};
+};
+/// Looks for a lost rig until it is back. Says in the outcome what it was told. Both are borrowed.
+[[nodiscard]] driver::Comeback comebackThrough(RigDoor& door,
+                                               Outcome& outcome,
+                                               const SearchLimits& limits);
 /// Times that it was lost since they were last noted.
 void noteInterruptions(driver::Rig& rig, Outcome& outcome);
 /// What the driver saw of the rig since it was opened and what the script did since it began, kind

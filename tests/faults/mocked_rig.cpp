@@ -18,6 +18,7 @@ public:
     }
     Result<driver::Transport*> open() override {
         close();
+        rig_.settle();
         const std::scoped_lock lock(bus_.listeners());
         auto opened = driver::openUsb();
         if (!opened) return opened.error();
@@ -34,6 +35,11 @@ public:
         (void)test::waitUntil([&] { return ledger.streams == 0 && ledger.hidThreads == 0; });
         rig_.forgetPulled();
     }
+    [[nodiscard]] Ring ring() override {
+        const driver::UsbLedger& ledger = driver::usbLedger();
+        return {.allowed = ledger.transfersAllowed, .inFlight = ledger.transfersInFlight};
+    }
+    [[nodiscard]] int slack() const override { return 10; }
     void pause(Nanoseconds time) override { std::this_thread::sleep_for(time); }
     void with(const std::function<void(sim::FaultyUsb&)>& use) override { rig_.live().with(use); }
 

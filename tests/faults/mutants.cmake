@@ -53,6 +53,12 @@ mutant(F12 inproc capture_frames.cpp [[header.captureId == expected_.captureId]]
 mutant(F13 inproc link.cpp [[ack && !*ack]] [[false]])
 mutant(F14 inproc link.cpp [[event.sequence != lastEvent_ + 1]] [[false]])
 mutant(F15 usb usb_stream_transport.cpp [[code == LIBUSB_ERROR_NO_MEM]] [[false]])
+mutant(F06 usb usb_stream_transport.cpp
+    [[libusb_clear_halt(rig_.handle.get(), rig_.interfaces.bulkIn)]] [[0]])
+mutant(F06-error usb usb_stream_transport.cpp [[stalled ? 0 : askWhetherThere()]]
+    [[stalled ? 0 : LIBUSB_ERROR_IO]])
+mutant(F15-none usb usb_stream_transport.cpp
+    [[steadyNow() - *starvedSince_ >= kMemoryLimit]] [[true]])
 mutant(F16-until-reset inproc watched_transport.cpp [[port == Port::Reset]] [[false]])
 mutant(F17-drift inproc frame_plan.cpp [[(bits & validity::kCurrent) == 0]] [[false]])
 mutant(F23 inproc frame_plan.cpp

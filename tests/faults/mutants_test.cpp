@@ -22,13 +22,14 @@ std::atomic<int> active{-1};
 std::string complaintOf(const Mutant& mutant, int seeds) {
     const bool usb = mutant.door == Door::usb;
     const RigSetup setup = usb ? setupOf(256, 16384) : smallSetup();
-    Row row = readRow(mutant.row);
-    for (int seed = 1; seed <= seeds; ++seed) {
-        row.script.seed = static_cast<std::uint64_t>(seed);
-        const auto door = usb ? mocked(setup) : inProcess(setup);
-        const Outcome outcome = measure(*door, setup, row);
-        const auto list = complaints(row, outcome, undisturbed(setup));
-        if (!list.empty()) return "seed " + std::to_string(seed) + ": " + list.front();
+    for (Row& row : variantsOf(readRow(mutant.row))) {
+        for (int seed = 1; seed <= seeds; ++seed) {
+            row.script.seed = static_cast<std::uint64_t>(seed);
+            const auto door = usb ? mocked(setup) : inProcess(setup);
+            const Outcome outcome = measure(*door, setup, row);
+            const auto list = complaints(row, outcome, undisturbed(setup));
+            if (!list.empty()) return "seed " + std::to_string(seed) + ": " + list.front();
+        }
     }
     return {};
 }
@@ -68,7 +69,7 @@ TEST_F(Mutants, TheSoundDriverAmongThemPasses) {
 TEST_F(Mutants, EveryRowOfTheMatrixHasOne) {
     std::set<std::string> have;
     for (const Mutant& mutant : mutants()) have.insert(mutant.row.substr(0, 3));
-    for (const std::string& row : rowNames()) {
+    for (const std::string& row : rowNames("umockdev")) {
         const bool ofMatrix = row.front() == 'F';
         EXPECT_TRUE(!ofMatrix || have.contains(row.substr(0, 3))) << row;
     }

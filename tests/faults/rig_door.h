@@ -19,6 +19,13 @@ public:
     virtual void close() = 0;
     virtual void pause(Nanoseconds time) = 0;
     virtual void with(const std::function<void(sim::FaultyUsb&)>& use) = 0;
+    /// Transfers of the opened stream: how many may be in flight, and how many are.
+    struct Ring {
+        int allowed = 0, inFlight = 0;
+    };
+    [[nodiscard]] virtual Ring ring() = 0;
+    /// How many times as long as in virtual time things may last here.
+    [[nodiscard]] virtual int slack() const = 0;
 
     [[nodiscard]] Nanoseconds now() {
         Nanoseconds time{0};

@@ -20,11 +20,13 @@ struct SoakPlan {
     std::string every = "9s..11s";  ///< from a fault to the next, as fault scripts have it
     std::uint64_t seed = 1;
     /// The rig's clock is the computer's. On a busy machine a rig that answers late is lost once
-    /// more, and reports that come late are opened anew: then those two are counted at least.
+    /// more, and reports that come late are opened anew: then those two are counted at least, and
+    /// of reports some pass unseen.
     bool realTime = false;
 };
 
 struct Soaked {
+    int captures = 0;                    ///< as planned, and until the last fault is over
     int frames = 0;                      ///< those that are as they should be
     std::map<std::string, int> kinds{};  ///< of fault, and how often each came
     int faults = 0;                      ///< what the script did

@@ -21,10 +21,10 @@ using device_test::Holdings;
 
 constexpr int kSide = 256, kChunk = 16384;  // a ring of a hundred transfers, not of a thousand
 
-/// Seven seconds. Of this seed's faults one is a pulled cable, and one a hang until the port is
-/// reset.
+/// Seven seconds. This seed's faults: a lost chunk, an unknown one, a loss of power, and a hang
+/// until the port is reset.
 SoakPlan shortPlan() {
-    return {.captures = 15, .every = "1.6s..2s", .seed = seedOr(13), .realTime = true};
+    return {.captures = 12, .every = "1.4s..1.6s", .seed = seedOr(5), .realTime = true};
 }
 SoakPlan halfAnHour() { return {.captures = 3600, .seed = seedOr(1), .realTime = true}; }
 
@@ -34,15 +34,19 @@ TEST(SoakOnUsb, LosesNoFrameTakesNoWrongOneAndLeavesNothingBehind) {
     const RigSetup setup = setupOf(kSide, kChunk);
     const auto door = mocked(setup);
     // What is made once is made before anything is counted.
-    const Soaked calm = soak(*door, setup, {.captures = 1, .every = "1s", .realTime = true});
+    const Soaked calm = soak(*door, setup, {.captures = 1, .realTime = true});
     ASSERT_TRUE(calm.troubles.empty()) << calm.troubles.front();
     const Holdings before;
     const Soaked soaked = soak(*door, setup, plan);
     // What a busy machine could not end in time ends a little later.
-    (void)test::waitUntil([&] { return Holdings().threads <= before.threads; });
+    (void)test::waitUntil([&] {
+        const Holdings now;
+        return now.threads <= before.threads && now.fds <= before.fds;
+    });
     const Holdings after;
     for (const std::string& trouble : soaked.troubles) ADD_FAILURE() << trouble;
-    EXPECT_EQ(soaked.frames, plan.captures * SoakPlan::kFramesPerCapture);
+    EXPECT_GE(soaked.captures, plan.captures);
+    EXPECT_EQ(soaked.frames, soaked.captures * SoakPlan::kFramesPerCapture);
     EXPECT_GE(soaked.pulls, 1);
     const auto& ledger = driver::usbLedger();
     EXPECT_EQ(ledger.transfersInFlight, 0);

@@ -20,7 +20,8 @@ TEST(Soak, LosesNoFrameTakesNoWrongOneAndCountsExactly) {
     const auto door = inProcess(setup, std::numeric_limits<int>::max());
     const Soaked soaked = soak(*door, setup, plan);
     for (const std::string& trouble : soaked.troubles) ADD_FAILURE() << trouble;
-    EXPECT_EQ(soaked.frames, plan.captures * SoakPlan::kFramesPerCapture);
+    EXPECT_GE(soaked.captures, plan.captures);
+    EXPECT_EQ(soaked.frames, soaked.captures * SoakPlan::kFramesPerCapture);
     EXPECT_GE(soaked.faults, plan.captures / 20 - 3) << "one in ten seconds";
     EXPECT_GE(soaked.pulls, 1);
     std::cout << summaryOf(soaked) << "\n";

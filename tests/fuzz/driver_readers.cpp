@@ -1,9 +1,9 @@
 // What the driver reads of a rig that may say anything, for libFuzzer (formats_fuzz.cpp): reports,
-// transfers through the assembler, descriptors, recordings with a host upon them, and the
-// simulator's fault scripts. The seeds are what the simulated rig says. Bytes behind a checksum are
-// tried as they are and with the checksum put right, or nothing would be read behind it.
+// transfers through the assembler, descriptors, recordings with a host upon them; the simulator's
+// fault scripts, and what its USB/IP server is told. The seeds are what the simulated rig says.
+// Bytes behind a checksum are tried as they are and with the checksum put right, or nothing would
+// be read behind it.
 
-#include <libusb.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -20,11 +20,10 @@
 #include "driver/recorder.h"
 #include "driver/replay.h"
 #include "driver/rig.h"
-#include "driver/usb_find.h"
 #include "sim/faults/fault_script.h"
 #include "sim/in_process.h"
-#include "sim/usb_descriptors.h"
 #include "tests/formats/readers.h"
+#include "tests/fuzz/usb_readers.h"
 
 namespace gonio::test {
 namespace {
@@ -35,12 +34,6 @@ using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::uint64_t kSession = 0x1122334455667788;
 constexpr Window kWindow{.x = 512, .y = 384, .size = {16, 16}, .binning = 1};
-
-Bytes bytesOf(std::string_view text) { return {text.begin(), text.end()}; }
-
-std::string textOf(std::span<const std::uint8_t> bytes) { return {bytes.begin(), bytes.end()}; }
-
-Error wrong(const std::string& what) { return {ErrorKind::Internal, what}; }
 
 /// What a host does with any rig.
 void host(Transport& transport, const std::function<void(const Frame&)>& look = {}) {
@@ -244,58 +237,6 @@ std::optional<Error> readTransfers(std::string_view text) {
     return std::nullopt;
 }
 
-// ---- descriptors, as libusb hands them over: it has read their lengths itself
-
-std::vector<std::string> soundDescriptors() {
-    std::vector<std::string> all;
-    for (const auto kind : {sim::CameraKind::Usb2, sim::CameraKind::Usb3})
-        all.push_back(textOf(sim::usb::configDescriptor(kind)));
-    for (const std::uint8_t index : {0, 1, 3, 240}) {
-        if (const auto text = sim::usb::stringDescriptor(index, "SIM-0001"))
-            all.push_back(textOf(*text));
-    }
-    return all;
-}
-
-std::optional<Error> readDescriptors(std::string_view text) {
-    const Bytes bytes = bytesOf(text);
-    if (textIn(bytes).size() > 127) return wrong("a string longer than its descriptor");
-    std::vector<std::vector<libusb_endpoint_descriptor>> endpoints;
-    std::vector<libusb_interface_descriptor> interfaces;
-    for (std::size_t at = 0; at + 2 <= bytes.size() && interfaces.size() < 32;) {
-        const std::size_t length = std::max<std::size_t>(2, bytes[at]);
-        if (at + length > bytes.size()) break;
-        const std::uint8_t* d = bytes.data() + at;
-        if (d[1] == LIBUSB_DT_INTERFACE && length >= 9) {
-            interfaces.push_back({.bInterfaceNumber = d[2],
-                                  .bAlternateSetting = d[3],
-                                  .bInterfaceClass = d[5],
-                                  .bInterfaceSubClass = d[6],
-                                  .bInterfaceProtocol = d[7]});
-            endpoints.emplace_back();
-        } else if (d[1] == LIBUSB_DT_ENDPOINT && length >= 7 && !endpoints.empty()) {
-            endpoints.back().push_back(
-                {.bEndpointAddress = d[2],
-                 .bmAttributes = d[3],
-                 .wMaxPacketSize = static_cast<std::uint16_t>(d[4] | d[5] << 8U)});
-        }
-        at += length;
-    }
-    std::vector<libusb_interface> all;
-    for (std::size_t i = 0; i < interfaces.size(); ++i) {
-        interfaces[i].bNumEndpoints = static_cast<std::uint8_t>(endpoints[i].size());
-        interfaces[i].endpoint = endpoints[i].data();
-        all.push_back({.altsetting = &interfaces[i], .num_altsetting = i % 7 == 6 ? 0 : 1});
-    }
-    libusb_config_descriptor config{};
-    config.bNumInterfaces = static_cast<std::uint8_t>(all.size());
-    config.interface = all.data();
-    const RigInterfaces found = interfacesOf(config);
-    if (found.complete() && (found.bulkIn & LIBUSB_ENDPOINT_IN) == 0)
-        return wrong("a stream that does not come in");
-    return std::nullopt;
-}
-
 // ---- recordings
 
 std::vector<std::string> soundRecordings() { return {recorded()}; }
@@ -359,12 +300,14 @@ std::optional<Error> readScript(std::string_view text) {
     return script ? std::nullopt : std::optional(script.error());
 }
 
-constexpr std::array<Reader, 5> kReaders{
+constexpr std::array<Reader, 7> kReaders{
     {{"grp_reports", false, soundReports, readReports},
      {"grp_transfers", false, soundTransfers, readTransfers},
      {"usb_descriptors", false, soundDescriptors, readDescriptors},
      {"recording", false, soundRecordings, readRecording},
-     {"fault_script", true, soundScripts, readScript}}};
+     {"fault_script", true, soundScripts, readScript},
+     {"usbip_commands", false, soundConversations, readUsbipCommands},
+     {"usbip_server", false, soundConversations, readUsbipConversation}}};
 
 }  // namespace
 

@@ -90,11 +90,23 @@ TEST(FaultScript, RefusesNumbersThatCannotBe) {
                              "with chance 1.1 per chunk lose chunk",
                              "with chance 0.1 per day lose chunk",
                              "at 1s unplug for -1s",
+                             "at 1s unplug for 0s",
+                             "at 1s unplug for 0s..1s",
+                             "at 1s lose 0 chunks",
+                             "at 1s lose 0..2 chunks",
+                             "at 1s shorten 0 chunks",
+                             "at 1s flip 0 bits in payload",
+                             "at 1s flip 0 bits in header",
+                             "at 1s burst of 0 bits in payload",
+                             "at 1s drop 0 reports",
+                             "at 1s pile up 0 reports",
+                             "at 1s delay ack 0s",
                              "seed -1",
                              "seed 1 2"}) {
         EXPECT_NE(refusal(line), "") << line;
     }
     EXPECT_NE(refusal(std::string(FaultScript::kMostBytes + 1, '\n')), "");
+    EXPECT_EQ(refusal("at 1s memory for 0 transfers"), "") << "none at all is a fault";
 }
 
 TEST(FaultScript, TheDocumentHasEveryFaultAndItsExampleIsSound) {

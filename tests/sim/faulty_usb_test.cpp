@@ -126,6 +126,49 @@ TEST_F(FaultyUsbTest, AHungRigNaksUntilItsPortIsReset) {
     EXPECT_EQ(usb.control({.requestType = 0x80, .length = 2}).answer, UsbAnswer::Done);
 }
 
+TEST_F(FaultyUsbTest, SilentReportsAreNakAndLostStalledOnesWaitForTheHaltToBeCleared) {
+    constexpr UsbSetup kClear{.requestType = 2, .request = 1, .index = usb::kInterruptIn};
+    while (usb.interruptIn().answer == UsbAnswer::Done) {
+    }
+    play("at 0s silence reports\n");
+    usb.device().tellUnknownEvent();
+    EXPECT_EQ(usb.interruptIn().answer, UsbAnswer::Nak);
+    usb.control(kClear);
+    EXPECT_EQ(usb.interruptIn().answer, UsbAnswer::Nak) << "it was no stall";
+    usb.reportsOpened();
+    EXPECT_EQ(usb.interruptIn().answer, UsbAnswer::Nak) << "it was lost";
+    play("at 0s stall reports\n");
+    usb.device().tellUnknownEvent();
+    EXPECT_EQ(usb.interruptIn().answer, UsbAnswer::Stall);
+    usb.reportsOpened();
+    EXPECT_EQ(usb.interruptIn().answer, UsbAnswer::Stall) << "its halt is still there";
+    usb.control(kClear);
+    EXPECT_EQ(usb.interruptIn().answer, UsbAnswer::Done);
+    EXPECT_EQ(usb.reports().haltsCleared(), 1);
+}
+
+TEST_F(FaultyUsbTest, AStallThatLastsIsThereAgainAfterEachClearing) {
+    constexpr UsbSetup kClear{.requestType = 2, .request = 1, .index = usb::kInterruptIn};
+    play("at 0s stall reports for 400ms\n");
+    usb.advanceTo(usb.now() + 399ms);
+    usb.control(kClear);
+    EXPECT_EQ(usb.interruptIn().answer, UsbAnswer::Stall);
+    usb.advanceTo(usb.now() + 1ms);
+    EXPECT_EQ(usb.interruptIn().answer, UsbAnswer::Stall);
+    usb.control(kClear);
+    EXPECT_EQ(usb.interruptIn().answer, UsbAnswer::Done);
+}
+
+TEST_F(FaultyUsbTest, OfReportsThatPileUpTheQueueKeepsSixtyThree) {
+    while (usb.interruptIn().answer == UsbAnswer::Done) {
+    }
+    play("at 0s pile up 100 reports\n");
+    int came = 0;
+    while (usb.interruptIn().answer == UsbAnswer::Done) ++came;
+    EXPECT_EQ(came, 63);
+    EXPECT_EQ(usb.device().overflow().reports, 37);
+}
+
 TEST_F(FaultyUsbTest, ALateAckComesWhenItIsDue) {
     play("on command 1 delay ack 150ms\n");
     const auto acks = [&] {

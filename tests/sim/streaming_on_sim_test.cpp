@@ -26,7 +26,7 @@ driver::CaptureRequest dark(std::uint64_t planStep, int frames) {
 
 struct Opened {
     sim::InProcessDoor door{{.errors = {}}};
-    driver::test::WatchedTransport watched{door, false};
+    driver::test::AllocationWatch watched{door, false};
     Result<driver::Rig> rig = driver::Rig::open(watched, kSession);
 
     Opened() {

@@ -41,8 +41,11 @@ public:
     }
     [[nodiscard]] bool connected() const { return connected_; }
     void send(const Bytes& bytes) const {
+        said_.insert(said_.end(), bytes.begin(), bytes.end());
         (void)!::send(descriptor_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
     }
+    /// All that was sent.
+    [[nodiscard]] const Bytes& said() const { return said_; }
     /// Exactly so many, or fewer when the server ends the connection or is silent for long.
     [[nodiscard]] Bytes receive(std::size_t count,
                                 std::chrono::milliseconds wait = std::chrono::seconds(20)) const {
@@ -154,6 +157,7 @@ public:
 
 private:
     int descriptor_;
+    mutable Bytes said_{};
     bool connected_ = false;
     std::uint32_t sequence_ = 0;
 };
