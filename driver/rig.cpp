@@ -277,7 +277,9 @@ Result<void> Rig::collect(const ArmedCapture& armed, const Making& making) {
         const auto done =  // by reference: a function of its own would allocate amid frames
             collector.collect(armed, progress_, exposed, std::ref(arrived));
         if (!cameBack) return done;
-        if (rebooted_ && !link_->lost()) return *std::exchange(rebooted_, std::nullopt);
+        if (!link_->lost()) {
+            if (auto told = tellReboot()) return *told;
+        }
         if (auto asked = askForHeld(armed); !asked) return asked;
     }
 }
