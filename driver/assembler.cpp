@@ -30,29 +30,38 @@ void count(Anomalies& anomalies, ChunkFault fault) {
 
 }  // namespace
 
-Result<void> Assembler::expect(const ExpectedCapture& capture) {
+void Assembler::forget() {
     present_.giveBack(memory_);
     next_.giveBack(memory_);
     bootId_.reset();
-    Result<CaptureFrames> frames = CaptureFrames::of(capture);
-    if (!frames) return frames.error();
-    present_ = std::move(*frames);
+}
+
+void Assembler::makeRoom(const ExpectedCapture& largest) {
+    forget();
+    if (!CaptureFrames::check(largest)) return;
+    present_.makeRoom(largest);
+    next_.makeRoom(largest);
+}
+
+Result<void> Assembler::expect(const ExpectedCapture& capture) {
+    forget();
+    if (auto sound = CaptureFrames::check(capture); !sound) return sound;
+    present_.begin(capture);
     memory_.provide(capture.frameBytes, present_.most());
     bootId_ = capture.bootId;
     return {};
 }
 
 Result<void> Assembler::expectNext(const ExpectedCapture& capture) {
-    Result<CaptureFrames> frames = CaptureFrames::of(capture);
-    if (!frames) return frames.error();
+    if (auto sound = CaptureFrames::check(capture); !sound) return sound;
     next_.giveBack(memory_);
-    next_ = std::move(*frames);
+    next_.begin(capture);
     return {};
 }
 
 void Assembler::moveOn() {
     present_.giveBack(memory_);
-    present_ = std::exchange(next_, {});
+    std::swap(present_, next_);
 }
 
 void Assembler::flushed(std::uint32_t nextStreamSequence) {

@@ -4,7 +4,8 @@
 // (capture_frames.h), and a count of every anomaly. A next capture may be expected beside it, whose
 // frames come while the present one's are still repaired: a chunk of it in its turn says that
 // whatever the present one lacks is lost. Before expect(): every chunk is stale. The memory of the
-// present one's frames waits here from expect() on, and is used again once it is given back.
+// present one's frames waits here from expect() on, and is used again once it is given back; so
+// are the records of captures, one after the other.
 
 #include <cstdint>
 #include <optional>
@@ -28,6 +29,13 @@ public:
     void forgetNext() { next_.giveBack(memory_); }
     /// Has memory for `frames` of `bytes` wait, beside what frames hold already.
     void provide(std::size_t bytes, std::size_t frames) { memory_.provide(bytes, frames); }
+    /// Forgets all, and keeps records for two captures like `largest`, the present and the next,
+    /// which will then be expected without allocating. Sizes that cannot be are left to expect().
+    void makeRoom(const ExpectedCapture& largest);
+    /// expectNext() will allocate nothing, and `frames` of both captures may be held at once.
+    [[nodiscard]] bool hasRoomForNext(const ExpectedCapture& next, std::size_t frames) const {
+        return next_.hasRoomFor(next) && memory_.most(next.frameBytes) >= frames;
+    }
     /// After FLUSH: older chunks are stale, and the jump to `nextStreamSequence` is no loss.
     void flushed(std::uint32_t nextStreamSequence);
 
@@ -50,6 +58,7 @@ public:
     [[nodiscard]] const Anomalies& anomalies() const { return anomalies_; }
 
 private:
+    void forget();
     void follow(std::uint32_t streamSequence);
     [[nodiscard]] bool beforeFlush(std::uint32_t streamSequence);
 

@@ -9,32 +9,55 @@
 
 namespace gonio::driver {
 
-Result<CaptureFrames> CaptureFrames::of(const ExpectedCapture& capture) {
-    const std::uint64_t payload = capture.maxChunkPayload;
-    const std::uint64_t chunks =
-        payload == 0 ? 0 : (std::uint64_t{capture.frameBytes} + payload - 1) / payload;
-    // The trailer's chunk_index is chunks + 1, and 65535 means "to the end" in RESEND.
-    constexpr std::uint64_t kMaxChunks = std::numeric_limits<std::uint16_t>::max() - 2;
-    constexpr int kMaxFrames = std::numeric_limits<std::uint16_t>::max();
-    if (chunks == 0 || chunks > kMaxChunks || capture.frameBytes > kMaxOpenBytes ||
-        capture.frames < 1 || capture.frames > kMaxFrames) {
-        return Error{ErrorKind::Device,
-                     "capture " + std::to_string(capture.captureId) + ": " +
-                         std::to_string(capture.frames) + " frames of " +
-                         std::to_string(capture.frameBytes) + " bytes in chunks of " +
-                         std::to_string(capture.maxChunkPayload) + " cannot be assembled"};
-    }
-    CaptureFrames frames;
-    frames.expected_ = capture;
-    frames.chunkCount_ = static_cast<std::uint16_t>(chunks);
+std::size_t CaptureFrames::chunksOf(const ExpectedCapture& capture) {
+    const std::size_t payload = capture.maxChunkPayload;
+    return payload == 0 ? 0 : (capture.frameBytes + payload - 1) / payload;
+}
+
+std::size_t CaptureFrames::mostOf(const ExpectedCapture& capture) {
     const auto all = static_cast<std::size_t>(capture.frames);
     const auto held = capture.held > 0 ? static_cast<std::size_t>(capture.held) : all;
-    frames.most_ = std::min({all, held, kMaxOpenBytes / capture.frameBytes});
-    frames.finished_.assign(all, false);
-    frames.ready_.reserve(frames.most_);
-    frames.spares_.reserve(frames.most_);
-    while (frames.spares_.size() < frames.most_) frames.spares_.push_back(frames.freshNode());
-    return frames;
+    return std::min({all, held, kMaxOpenBytes / capture.frameBytes});
+}
+
+Result<void> CaptureFrames::check(const ExpectedCapture& capture) {
+    const std::size_t chunks = chunksOf(capture);
+    // The trailer's chunk_index is chunks + 1, and 65535 means "to the end" in RESEND.
+    constexpr std::size_t kMaxChunks = std::numeric_limits<std::uint16_t>::max() - 2;
+    constexpr int kMaxFrames = std::numeric_limits<std::uint16_t>::max();
+    const bool sound = chunks > 0 && chunks <= kMaxChunks && capture.frameBytes <= kMaxOpenBytes &&
+                       capture.frames >= 1 && capture.frames <= kMaxFrames;
+    if (sound) return {};
+    return Error{ErrorKind::Device,
+                 "capture " + std::to_string(capture.captureId) + ": " +
+                     std::to_string(capture.frames) + " frames of " +
+                     std::to_string(capture.frameBytes) + " bytes in chunks of " +
+                     std::to_string(capture.maxChunkPayload) + " cannot be assembled"};
+}
+
+void CaptureFrames::makeRoom(const ExpectedCapture& capture) {
+    const std::size_t most = mostOf(capture), chunks = chunksOf(capture);
+    finished_.reserve(static_cast<std::size_t>(capture.frames));
+    ready_.reserve(most);
+    spares_.reserve(most);
+    if (chunks > mostChunks_) spares_.clear();
+    mostChunks_ = std::max(mostChunks_, chunks);
+    while (open_.size() + spares_.size() < most) spares_.push_back(freshNode(mostChunks_));
+}
+
+bool CaptureFrames::hasRoomFor(const ExpectedCapture& capture) const {
+    const std::size_t most = mostOf(capture);
+    return finished_.capacity() >= static_cast<std::size_t>(capture.frames) &&
+           ready_.capacity() >= most && open_.size() + spares_.size() >= most &&
+           mostChunks_ >= chunksOf(capture);
+}
+
+void CaptureFrames::begin(const ExpectedCapture& capture) {
+    makeRoom(capture);
+    expected_ = capture;
+    chunkCount_ = static_cast<std::uint16_t>(chunksOf(capture));
+    most_ = mostOf(capture);
+    finished_.assign(static_cast<std::size_t>(capture.frames), false);
 }
 
 bool CaptureFrames::owns(const ChunkHeader& header) const {
@@ -100,29 +123,30 @@ bool CaptureFrames::place(const Chunk& chunk, Anomalies& anomalies, WireMemory& 
 }
 
 /// The record of a frame with room for which of its chunks are there.
-CaptureFrames::OpenFrames::node_type CaptureFrames::freshNode() const {
+CaptureFrames::OpenFrames::node_type CaptureFrames::freshNode(std::size_t chunks) {
     OpenFrames one;
-    one[0].have.assign(std::size_t{chunkCount_} + 2, false);
+    one[0].have.reserve(chunks + 2);
     return one.extract(one.begin());
 }
 
 CaptureFrames::OpenFrame& CaptureFrames::open(int frame) {
     const auto found = open_.find(frame);
     if (found != open_.end()) return found->second;
-    if (spares_.empty()) spares_.push_back(freshNode());  // asked for, with no chunk of it here
+    // Asked for, with no chunk of it here.
+    if (spares_.empty()) spares_.push_back(freshNode(mostChunks_));
     OpenFrames::node_type node = std::move(spares_.back());
     spares_.pop_back();
     node.key() = frame;
-    node.mapped().missing = node.mapped().have.size();
-    return open_.insert(std::move(node)).position->second;
+    OpenFrame& fresh = open_.insert(std::move(node)).position->second;
+    fresh.missing = std::size_t{chunkCount_} + 2;
+    fresh.have.assign(fresh.missing, false);
+    return fresh;
 }
 
 /// As freshNode() made it, for another frame.
 void CaptureFrames::close(OpenFrames::iterator frame) {
     OpenFrames::node_type node = open_.extract(frame);
-    std::vector<bool> have = std::move(node.mapped().have);
-    have.assign(have.size(), false);
-    node.mapped() = {.have = std::move(have)};
+    node.mapped() = {.have = std::move(node.mapped().have)};
     if (spares_.size() < spares_.capacity()) spares_.push_back(std::move(node));
 }
 
@@ -247,9 +271,18 @@ void CaptureFrames::askedFor(const MissingChunks& chunks) {
 }
 
 void CaptureFrames::giveBack(WireMemory& memory) {
-    for (auto& [index, frame] : open_) memory.giveBack(std::move(frame.bytes));
     for (WireFrame& frame : ready_) memory.giveBack(std::move(frame.bytes));
-    *this = {};
+    ready_.clear();
+    while (!open_.empty()) {
+        memory.giveBack(std::move(open_.begin()->second.bytes));
+        close(open_.begin());
+    }
+    finished_.clear();
+    expected_ = {};
+    chunkCount_ = 0;
+    most_ = 0;
+    aborted_.reset();
+    over_ = false;
 }
 
 }  // namespace gonio::driver

@@ -4,7 +4,8 @@
 // both CRC levels agree, and what is known to be lost (to be asked for again). A frame's memory is
 // taken when its first sound chunk comes, exactly frameBytes, and never for more frames than may be
 // held, nor than kMaxOpenBytes hold: then the oldest unfinished frame is given up. Nothing else is
-// allocated for chunks as they come. Whether a frame is what was planned is frame_plan.h's
+// allocated for chunks as they come, nor to begin a capture for which there is room: the records of
+// one capture are used again for the next. Whether a frame is what was planned is frame_plan.h's
 // business.
 
 #include <cstddef>
@@ -53,7 +54,12 @@ public:
     /// Of no capture: every chunk is another's.
     CaptureFrames() = default;
     /// A Device error when the sizes of `capture` cannot be.
-    static Result<CaptureFrames> of(const ExpectedCapture& capture);
+    [[nodiscard]] static Result<void> check(const ExpectedCapture& capture);
+    /// Nothing of the present capture may be left: giveBack(). Precondition: check().
+    void begin(const ExpectedCapture& capture);
+    /// begin() will not allocate for `capture`. Precondition: check().
+    void makeRoom(const ExpectedCapture& capture);
+    [[nodiscard]] bool hasRoomFor(const ExpectedCapture& capture) const;
 
     [[nodiscard]] bool owns(const ChunkHeader& header) const;
     /// Frames that may be held at once: so many buffers should wait.
@@ -77,7 +83,7 @@ public:
     [[nodiscard]] std::optional<MissingChunks> missing(int frame) const;
     /// The chunks have been asked for: the frame is lost again only when the last of them passes.
     void askedFor(const MissingChunks& chunks);
-    /// Ends it all: its memory is for others.
+    /// Ends it all: its memory is for others, its records are for the next capture.
     void giveBack(WireMemory& memory);
 
     /// The first ABORTED.
@@ -94,11 +100,13 @@ private:
         std::optional<std::uint16_t> awaited;  ///< the last chunk asked for
     };
 
+    [[nodiscard]] static std::size_t chunksOf(const ExpectedCapture& capture);
+    [[nodiscard]] static std::size_t mostOf(const ExpectedCapture& capture);
     [[nodiscard]] bool fits(const ChunkHeader& header) const;
     [[nodiscard]] std::size_t dataLength(std::size_t chunkIndex) const;
     using OpenFrames = std::map<int, OpenFrame>;
 
-    [[nodiscard]] OpenFrames::node_type freshNode() const;
+    [[nodiscard]] static OpenFrames::node_type freshNode(std::size_t chunks);
     OpenFrame& open(int frame);
     void close(OpenFrames::iterator frame);
     bool hold(OpenFrame& frame, Anomalies& anomalies, WireMemory& memory);
@@ -109,7 +117,8 @@ private:
     std::uint16_t chunkCount_ = 0;  ///< DATA chunks per frame; 0: of no capture
     std::size_t most_ = 0;
     OpenFrames open_;
-    std::vector<OpenFrames::node_type> spares_;  ///< for frames that begin
+    std::vector<OpenFrames::node_type> spares_;  ///< for frames that begin; never more than before
+    std::size_t mostChunks_ = 0;                 ///< for so many DATA chunks each
     std::vector<bool> finished_;
     std::vector<WireFrame> ready_;
     std::optional<Aborted> aborted_;

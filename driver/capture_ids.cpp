@@ -12,6 +12,8 @@ constexpr std::uint16_t kMostAttempts = 0xFFFF;
 
 }  // namespace
 
+CaptureIds::CaptureIds() { recent_.reserve(kRemembered + 1); }
+
 std::uint64_t CaptureIds::next(std::uint64_t planStep) {
     Used used{.planStep = planStep};
     const auto known = std::find_if(
@@ -22,7 +24,7 @@ std::uint64_t CaptureIds::next(std::uint64_t planStep) {
     }
     used.attempt = static_cast<std::uint16_t>(used.attempt == kMostAttempts ? 1 : used.attempt + 1);
     recent_.push_back(used);
-    if (recent_.size() > kRemembered) recent_.pop_front();
+    if (recent_.size() > kRemembered) recent_.erase(recent_.begin());
     return planStep << 16 | used.attempt;
 }
 

@@ -4,12 +4,14 @@
 // at one step wrap.
 
 #include <cstdint>
-#include <deque>
+#include <vector>
 
 namespace gonio::driver {
 
 class CaptureIds {
 public:
+    CaptureIds();
+    /// Allocates nothing.
     [[nodiscard]] std::uint64_t next(std::uint64_t planStep);
 
 private:
@@ -17,7 +19,7 @@ private:
         std::uint64_t planStep = 0;
         std::uint16_t attempt = 0;
     };
-    std::deque<Used> recent_;  ///< newest last
+    std::vector<Used> recent_;  ///< newest last
 };
 
 }  // namespace gonio::driver

@@ -10,6 +10,33 @@ constexpr int kReasonsKept = 8;
 
 }  // namespace
 
+void CaptureProgress::start(int frames, int held) {
+    frames_.clear();
+    frames_.resize(static_cast<std::size_t>(frames));
+    most_ = held > 0 ? held : frames;
+    held_ = 0;
+    delivered_ = 0;
+    asked_.clear();
+    hopeless_.clear();
+    failed_ = interrupted_ = false;
+    reasons_ = 0;
+    evidence_.clear();
+    discarded = resends = recaptures = 0;
+}
+
+void CaptureProgress::makeRoom(int frames) {
+    const auto count = static_cast<std::size_t>(frames);
+    frames_.reserve(count);
+    asked_.reserve(count);
+    hopeless_.reserve(count);
+}
+
+bool CaptureProgress::hasRoom(int frames) const {
+    const std::size_t least =
+        std::min({frames_.capacity(), asked_.capacity(), hopeless_.capacity()});
+    return least >= static_cast<std::size_t>(frames);
+}
+
 void CaptureProgress::begin() {
     asked_.assign(frames_.size(), 0);
     hopeless_.assign(frames_.size(), false);

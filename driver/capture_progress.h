@@ -19,9 +19,14 @@ using FrameSink = std::function<Result<void>(Frame&&)>;
 
 class CaptureProgress {
 public:
+    CaptureProgress() = default;
     /// At most `held` frames wait to be delivered; 0: all.
-    explicit CaptureProgress(int frames, int held = 0)
-        : frames_(static_cast<std::size_t>(frames)), most_(held > 0 ? held : frames) {}
+    explicit CaptureProgress(int frames, int held = 0) { start(frames, held); }
+    /// As a new one, in the memory of the last.
+    void start(int frames, int held);
+    /// start() and begin() will not allocate for so many frames.
+    void makeRoom(int frames);
+    [[nodiscard]] bool hasRoom(int frames) const;
 
     /// A new attempt: what was hopeless may be hoped for again.
     void begin();

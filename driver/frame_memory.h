@@ -3,6 +3,7 @@
 // is allocated while a rig sends. They are made before the rig is told to expose. Never more wait
 // than were asked for at once.
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -18,11 +19,17 @@ class FrameMemory {
 public:
     /// At least `count` buffers of `shape` wait from now on; those of another shape are let go.
     void provide(Shape shape, std::size_t count) {
-        if (!(shape == shape_)) spares_.clear();
+        if (!(shape == shape_)) {
+            spares_.clear();
+            most_ = 0;
+        }
         shape_ = shape;
-        spares_.reserve(count);
+        most_ = std::max(most_, count);
+        spares_.reserve(most_);
         while (spares_.size() < count) spares_.emplace_back(shape);
     }
+    /// So many of `shape` have been asked for: as many wait, but for those that are in use or kept.
+    [[nodiscard]] std::size_t most(const Shape& shape) const { return shape == shape_ ? most_ : 0; }
     /// One that waits; where none does, a new one. What it holds is of no meaning.
     [[nodiscard]] Buffer take() {
         if (spares_.empty()) return Buffer(shape_);
@@ -33,11 +40,12 @@ public:
     /// A buffer that somebody else has kept may be given back too: nothing happens.
     void giveBack(Buffer&& buffer) {
         const bool wanted = !buffer.empty() && buffer.size() == shape_;
-        if (wanted && spares_.size() < spares_.capacity()) spares_.push_back(std::move(buffer));
+        if (wanted && spares_.size() < most_) spares_.push_back(std::move(buffer));
     }
 
 private:
     Shape shape_{};
+    std::size_t most_ = 0;
     std::vector<Buffer> spares_;
 };
 

@@ -3,21 +3,24 @@
 // touches it, one request at a time; input reports wait in a queue, of which the newest are kept.
 // A request that the rig does not answer in a second is a failure, as is a read that fails, and a
 // failure is final: the thread may be stuck in the kernel then, and is left behind with what it
-// holds.
+// holds. Nothing is allocated for a request, nor for a report that comes.
 
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
-#include <deque>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "driver/protocol/transport.h"
 
 namespace gonio::driver {
+
+/// The name of the thread that owns the reports, as `top -H` and a debugger show it.
+inline constexpr const char* kReportThread = "gonio-reports";
 
 struct HidNode {
     std::string path;  ///< "/dev/hidraw0": of this moment, never to be kept
@@ -57,12 +60,12 @@ private:
     struct Job {
         Kind kind = Kind::Open;
         Report report{};
-        bool done = false;
+        bool asked = false, done = false;
         std::string problem;  ///< empty: it went well
     };
     class Owner;  // of the hid_device
 
-    explicit HidChannel(HidNode node) : node_(std::move(node)) {}
+    explicit HidChannel(HidNode node);
     [[nodiscard]] Result<Report> ask(Kind kind, const Report& report);
     void serve();
     void perform(Owner& owner, Job& job) const;
@@ -73,8 +76,8 @@ private:
 
     mutable std::mutex mutex_;
     std::condition_variable changed_;
-    std::shared_ptr<Job> job_;  ///< shared: a caller may give up while the thread still works on it
-    std::deque<Report> inputs_;
+    Job job_;  ///< of a caller that has given up, nobody wants to know: it is a failure
+    std::vector<Report> inputs_;  ///< oldest first
     bool stopping_ = false, finished_ = false;
     std::optional<Error> failure_;
 };

@@ -1,4 +1,5 @@
 #include <hidapi.h>
+#include <pthread.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -75,6 +76,8 @@ private:
     hid_device* device_ = nullptr;
 };
 
+HidChannel::HidChannel(HidNode node) : node_(std::move(node)) { inputs_.reserve(kInputsKept); }
+
 Result<std::shared_ptr<HidChannel>> HidChannel::open(const HidNode& node) {
     const std::string what = "open the reports of rig " + node.serial;
     if (const std::string obstacle = hidObstacle(node); !obstacle.empty())
@@ -97,18 +100,17 @@ Result<std::shared_ptr<HidChannel>> HidChannel::open(const HidNode& node) {
 Result<Report> HidChannel::ask(Kind kind, const Report& report) {
     std::unique_lock lock(mutex_);
     if (failure_) return *failure_;
-    const auto job = std::make_shared<Job>(Job{.kind = kind, .report = report});
-    job_ = job;
+    job_ = {.kind = kind, .report = report, .asked = true};
     changed_.notify_all();
     changed_.wait_until(lock, std::chrono::steady_clock::now() + kRequestLimit, [&] {
-        return job->done || failure_;
+        return job_.done || failure_;
     });
-    if (!job->done) {
+    if (!job_.done) {
         if (!failure_) fail("does not answer");
         return *failure_;
     }
-    if (job->problem.empty()) return job->report;
-    return Error{ErrorKind::Device, "rig " + node_.serial + ": " + job->problem};
+    if (job_.problem.empty()) return job_.report;
+    return Error{ErrorKind::Device, "rig " + node_.serial + ": " + job_.problem};
 }
 
 Result<void> HidChannel::write(const Report& report) {
@@ -139,7 +141,7 @@ Result<std::optional<Report>> HidChannel::readInput(Nanoseconds wait) {
         return std::optional<Report>{};
     }
     const Report report = inputs_.front();
-    inputs_.pop_front();
+    inputs_.erase(inputs_.begin());
     return std::optional(report);
 }
 
@@ -202,22 +204,23 @@ void HidChannel::perform(Owner& owner, Job& job) const {
 }
 
 void HidChannel::serve() {
+    (void)pthread_setname_np(pthread_self(), kReportThread);
     {
         Owner owner;
         Report report{};
         std::unique_lock lock(mutex_);
         while (!stopping_) {
-            if (const auto job = std::exchange(job_, nullptr)) {
+            if (std::exchange(job_.asked, false)) {
+                Job work = job_;
                 lock.unlock();
-                Job work = *job;
                 perform(owner, work);
                 lock.lock();
                 work.done = true;
-                *job = work;
+                job_ = std::move(work);
                 changed_.notify_all();
             }
             if (!owner.get() || failure_) {
-                changed_.wait_for(lock, 100ms, [&] { return job_ || stopping_; });
+                changed_.wait_for(lock, 100ms, [&] { return job_.asked || stopping_; });
                 continue;
             }
             lock.unlock();
@@ -225,8 +228,8 @@ void HidChannel::serve() {
             lock.lock();
             if (n < 0) fail("is gone");
             if (n != kReportSize) continue;  // nothing, or no report of ours
+            if (inputs_.size() == kInputsKept) inputs_.erase(inputs_.begin());
             inputs_.push_back(report);
-            if (inputs_.size() > kInputsKept) inputs_.pop_front();
             changed_.notify_all();
         }
     }

@@ -48,7 +48,9 @@ Result<std::unique_ptr<RigLink>> RigLink::open(Transport& transport, const LinkO
 RigLink::RigLink(Transport& transport, const LinkOptions& options)
     : wire_(transport),
       options_(options),
-      identity_{.strings = transport.strings(), .ident = {}, .limits = {}} {}
+      identity_{.strings = transport.strings(), .ident = {}, .limits = {}} {
+    events_.reserve(kEventsHeld + 1);
+}
 
 RigLink::~RigLink() { (void)release(); }
 
@@ -62,6 +64,7 @@ Result<void> RigLink::identify() {
 Result<void> RigLink::resume(Transport& transport) {
     const std::string what = "come back to " + rigName(strings());
     abandon({ErrorKind::Device, what});
+    cutOffDone_.reset();
     wire_.attach(transport);
     if (auto done = takeUp(transport.strings()); !done) {
         const Error why = done.error().in(what);
@@ -80,12 +83,29 @@ Result<void> RigLink::takeUp(const DeviceStrings& there) {
     if (auto stale = dropInputs(); !stale) return stale;
     const std::uint32_t boot = ident().bootId;
     if (auto done = identify(); !done) return done;
-    if (ident().bootId != boot) lastEvent_ = 0;
+    const bool otherBoot = ident().bootId != boot;
+    if (otherBoot) lastEvent_ = 0;
     soughtEvent_ = 0;
     status_.reset();
     statusSequence_.reset();
     if (auto done = claim(); !done) return done;
+    if (auto done = recall(otherBoot); !done) return done;
     return readEvents();
+}
+
+/// LAST_ACK tells of the command that was cut off.
+Result<void> RigLink::recall(bool otherBoot) {
+    const std::optional<Command> cutOff = std::exchange(unanswered_, std::nullopt);
+    if (!cutOff) return {};
+    cutOffDone_ = false;
+    if (otherBoot) return {};
+    const Result<std::optional<Ack>> ack = storedAck(*cutOff);
+    if (!ack) {
+        unanswered_ = cutOff;  // lost again, before it could be asked
+        return ack.error();
+    }
+    cutOffDone_ = *ack && (*ack)->status == status::kOk;
+    return {};
 }
 
 Result<void> RigLink::dropInputs() {
@@ -157,6 +177,7 @@ Result<Arguments> RigLink::command(Op op, const Arguments& arguments) {
                           .sequence = lastCommand_,
                           .op = op,
                           .arguments = arguments};
+    unanswered_ = command;
     const Nanoseconds giveUp = clock().now() + kBusyLimit;
     for (int sends = 0; sends < kSends;) {
         const Result<std::optional<Ack>> ack = sendOnce(command);
@@ -166,12 +187,14 @@ Result<Arguments> RigLink::command(Op op, const Arguments& arguments) {
             continue;
         }
         const Ack& answer = **ack;
+        unanswered_.reset();
         if (answer.status == status::kOk) return answer.result;
         if (answer.status == status::kBusy && clock().now() < giveUp) {
             // Sent again in time for the heartbeat, whatever pause the rig asks for.
             const Nanoseconds pause = std::min<Nanoseconds>(
                 std::chrono::milliseconds(std::max<int>(answer.retryMs, 1)), pingPeriod());
             if (auto heard = listen(pause); !heard) return heard.error().in(what());
+            unanswered_ = command;
             continue;
         }
         const bool held = answer.status == status::kBusy || answer.status == status::kNotOwner;
@@ -282,7 +305,7 @@ void RigLink::keep(const Event& event) {
     lastEvent_ = event.sequence;
     events_.push_back(event);
     if (events_.size() <= kEventsHeld) return;
-    events_.pop_front();
+    events_.erase(events_.begin());
     ++counters_.missedEvents;
 }
 

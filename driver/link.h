@@ -9,10 +9,10 @@
 // A rig that is gone, that does not answer three sends, whose reports stay silent, that has
 // rebooted, or whose claim has lapsed is lost: every call repeats why, at once, and the transport
 // is not touched any more. resume() takes the claim up again over another transport of the same
-// rig; events, counters and the clock go on.
+// rig; events, our counters and the clock go on. The rig's own are read again and never compared
+// with what they were before: they count since its boot, which may be another.
 
 #include <cstdint>
-#include <deque>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -63,6 +63,9 @@ public:
     /// Takes the claim up again, also with another boot id. Another serial number is a Device error
     /// that names both; after any error the link is lost, and `transport` is not touched any more.
     Result<void> resume(Transport& transport);
+    /// After resume(): whether the rig had done the command that the loss cut off; empty: none was
+    /// on its way. Another boot has done nothing.
+    [[nodiscard]] std::optional<bool> cutOffDone() const { return cutOffDone_; }
     /// As if the rig were gone.
     void abandon(const Error& why) { (void)wire_.lose(why, WatchedTransport::Port::Leave); }
 
@@ -95,6 +98,7 @@ private:
     Result<void> identify();
     Result<void> takeUp(const DeviceStrings& there);
     Result<void> claim();
+    Result<void> recall(bool otherBoot);
     Result<void> dropInputs();
     Result<void> readEvents();
     Result<EventsPage> readEventsPage();
@@ -117,10 +121,12 @@ private:
     bool claimed_ = false;
     bool resumed_ = false;
     std::uint16_t lastCommand_ = 0;
+    std::optional<Command> unanswered_;  ///< of which no final ACK has come
+    std::optional<bool> cutOffDone_;
     Nanoseconds fed_{0};  ///< when the last command was sent
     std::optional<Status> status_;
     std::optional<std::uint16_t> statusSequence_;
-    std::deque<Event> events_;
+    std::vector<Event> events_;      ///< has room for all that are held
     std::uint32_t lastEvent_ = 0;    ///< event_seq up to which all are taken or kept
     std::uint32_t soughtEvent_ = 0;  ///< the newest that STATUS promised when they were last read
     bool eventsUnread_ = false;      ///< a page could not be read since the last STATUS

@@ -139,10 +139,6 @@ Result<std::optional<BulkBytes>> RecordingTransport::readBulk(Nanoseconds wait) 
     return recorded(Kind::ReadBulk, {}, [&] { return inner_.readBulk(wait); });
 }
 
-Result<void> RecordingTransport::resetStream() {
-    return recorded(Kind::ResetStream, {}, [&] { return inner_.resetStream(); });
-}
-
 Result<void> RecordingTransport::reopenReports() {
     return recorded(Kind::ReopenReports, {}, [&] { return inner_.reopenReports(); });
 }

@@ -49,7 +49,6 @@ public:
     [[nodiscard]] Result<Report> getFeature(std::uint8_t id) override;
     [[nodiscard]] Result<std::optional<Report>> readInput(Nanoseconds wait) override;
     [[nodiscard]] Result<std::optional<BulkBytes>> readBulk(Nanoseconds wait) override;
-    Result<void> resetStream() override;
     Result<void> reopenReports() override;
     Result<void> resetPort() override;
 

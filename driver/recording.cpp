@@ -37,6 +37,12 @@ void append(std::vector<std::uint8_t>& bytes, std::string_view text) {
 
 std::string textOf(Bytes bytes) { return {bytes.begin(), bytes.end()}; }
 
+/// 8 was a call that nobody made.
+bool isKind(std::uint8_t number) {
+    return number >= static_cast<std::uint8_t>(Kind::Open) &&
+           number <= static_cast<std::uint8_t>(Kind::ResetPort) && number != 8;
+}
+
 std::size_t sentBytes(Kind kind) {
     switch (kind) {
         case Kind::Write:
@@ -76,9 +82,7 @@ std::optional<Error> decodeError(Bytes bytes) {
 /// Empty: the body is of no call.
 std::optional<RecordedCall> decodeBody(Bytes body) {
     if (body.size() < kBodyHead) return std::nullopt;
-    const bool known = body[0] >= static_cast<std::uint8_t>(Kind::Open) &&
-                       body[0] <= static_cast<std::uint8_t>(Kind::ResetPort) &&
-                       body[1] <= static_cast<std::uint8_t>(Outcome::Failed);
+    const bool known = isKind(body[0]) && body[1] <= static_cast<std::uint8_t>(Outcome::Failed);
     const std::size_t sent = get<std::uint32_t>(body, 18), got = get<std::uint32_t>(body, 22);
     if (!known || sent + got != body.size() - kBodyHead) return std::nullopt;
     RecordedCall call{.kind = static_cast<Kind>(body[0]),
@@ -126,7 +130,7 @@ std::string describe(Kind kind, Bytes sent) {
                                                       "get feature",
                                                       "read an input report",
                                                       "read the stream",
-                                                      "reset the stream",
+                                                      "",
                                                       "reopen the reports",
                                                       "reset the port"};
     constexpr std::string_view kDigits = "0123456789ABCDEF";

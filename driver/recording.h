@@ -27,8 +27,7 @@ struct RecordedCall {
         GetFeature,
         ReadInput,
         ReadBulk,
-        ResetStream,
-        ReopenReports,
+        ReopenReports = 9,
         ResetPort
     };
     enum class Outcome : std::uint8_t {

@@ -60,7 +60,6 @@ public:
         lent_ = std::move(**got);
         return std::optional<BulkBytes>(lent_);
     }
-    Result<void> resetStream() override { return plain(Kind::ResetStream, {}); }
     Result<void> reopenReports() override { return plain(Kind::ReopenReports, {}); }
     Result<void> resetPort() override { return plain(Kind::ResetPort, {}); }
 

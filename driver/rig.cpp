@@ -194,52 +194,50 @@ Result<void> Rig::admit(const CaptureRequest& request, const ArmAhead& ahead) {
 Result<Capture> Rig::capture(const CaptureRequest& request,
                              const ArmAhead& ahead,
                              const FrameSink& sink) {
-    const std::string what = describe(request);
     beginCall();
     const auto admitted = inOneBoot([&] { return admit(request, ahead); });
-    if (!admitted) return admitted.error().in(what);
+    if (!admitted) return admitted.error().in(describe(request));
     const Anomalies before = anomalies();
-    CaptureProgress progress(request.frames, sink ? framesHeld() : 0);
-    provideMemory(request, ahead, static_cast<bool>(sink));
-    Result<void> done =
-        fill({.request = request, .ahead = ahead, .sink = sink, .progress = progress});
+    const bool toSink = static_cast<bool>(sink);
+    provideMemory(request, ahead, toSink);
+    progress_.start(request.frames, toSink ? framesHeld() : 0);
+    Result<void> done = fill({.request = request, .ahead = ahead, .sink = sink});
     if (done && !request.keepLit) done = inOneBoot([&] { return putOut(); });
     if (!done) {
         (void)abort();  // what cannot be reached any more goes dark by its own heartbeat
-        return failed(done.error(), progress, before).in(what);
+        const Error error = failed(done.error(), before).in(describe(request));
+        progress_.start(0, 0);  // lets go of the frames that are there
+        return error;
     }
-    return Capture{.frames = progress.takeFrames(),
+    return Capture{.frames = progress_.takeFrames(),
                    .anomalies = anomalies().since(before),
-                   .discarded = progress.discarded,
-                   .resends = progress.resends,
-                   .recaptures = progress.recaptures,
-                   .evidence = progress.evidence()};
+                   .discarded = progress_.discarded,
+                   .resends = progress_.resends,
+                   .recaptures = progress_.recaptures,
+                   .evidence = progress_.evidence()};
 }
 
 /// The error with its evidence.
-Error Rig::failed(const Error& error,
-                  const CaptureProgress& progress,
-                  const Anomalies& before) const {
-    std::string message = error.message + " (" + plural(progress.resends, "resend") + ", " +
-                          plural(progress.recaptures, "recapture") +
+Error Rig::failed(const Error& error, const Anomalies& before) const {
+    std::string message = error.message + " (" + plural(progress_.resends, "resend") + ", " +
+                          plural(progress_.recaptures, "recapture") +
                           "; anomalies: " + anomalies().since(before).text();
-    if (!progress.evidence().empty()) message += "; " + progress.evidence();
+    if (!progress_.evidence().empty()) message += "; " + progress_.evidence();
     return {error.kind, message + ")", error.deviceStatus};
 }
 
 /// Attempts until every frame is there. Early frames cost no recapture, but a rig whose settings
 /// are still not in effect after control_latency attempts does not do what it says.
 Result<void> Rig::fill(const Making& making) {
-    CaptureProgress& progress = making.progress;
     int early = 0;
     while (true) {
         if (auto tried = attempt(making); !tried) return tried;
-        if (progress.toArm() == 0) return {};
-        if (progress.failed()) {
-            if (progress.recaptures == kRecaptures)
+        if (progress_.toArm() == 0) return {};
+        if (progress_.failed()) {
+            if (progress_.recaptures == kRecaptures)
                 return Error{ErrorKind::Device, "frames are missing or not as planned"};
-            ++progress.recaptures;
-        } else if (!progress.interrupted()) {  // else it is the link's doing
+            ++progress_.recaptures;
+        } else if (!progress_.interrupted()) {  // else it is the link's doing
             if (++early > link_->ident().controlLatency)
                 return Error{ErrorKind::Device, "settings do not take effect"};
         }
@@ -248,15 +246,13 @@ Result<void> Rig::fill(const Making& making) {
 }
 
 Result<void> Rig::attempt(const Making& making) {
-    CaptureProgress& progress = making.progress;
-    progress.begin();
-    const auto armed =
-        inOneBoot([&] { return takeUpOrArm(making.request, making.progress.toArm()); });
+    progress_.begin();
+    const auto armed = inOneBoot([&] { return takeUpOrArm(making.request, progress_.toArm()); });
     if (!armed) return armed.error();
     bool again = false;
     return inOneBoot([&]() -> Result<void> {
         if (std::exchange(again, true)) {
-            if (auto asked = askForHeld(*armed, progress); !asked) return asked;
+            if (auto asked = askForHeld(*armed); !asked) return asked;
         }
         return collect(*armed, making);
     });
@@ -264,17 +260,14 @@ Result<void> Rig::attempt(const Making& making) {
 
 Result<void> Rig::collect(const ArmedCapture& armed, const Making& making) {
     const auto exposed = [&]() -> Result<void> {
-        const bool overlaps = making.request.keepLit && link_->ident().frameRam >= kFramesToOverlap;
-        if (!making.ahead.next || !overlaps) return {};
-        if (!haveMemoryFor(making.request.frames, making.ahead.next->frames)) return {};
-        return armAhead(*making.ahead.next);
+        return mayArmAhead(making) ? armAhead(*making.ahead.next) : Result<void>();
     };
     // A sink may keep the rig alive, which may be lost and come back in it.
     bool cameBack = false;
     const auto arrived = [&]() -> Result<void> {
         if (!making.sink) return {};
         const int before = comebacks_;
-        auto given = making.progress.deliver(making.sink, pixels_);
+        auto given = progress_.deliver(making.sink, pixels_);
         cameBack = given && comebacks_ != before;
         return cameBack ? Error{ErrorKind::Interrupted, "the rig came back"} : given;
     };
@@ -282,10 +275,12 @@ Result<void> Rig::collect(const ArmedCapture& armed, const Making& making) {
     while (true) {
         cameBack = false;
         const auto done =  // by reference: a function of its own would allocate amid frames
-            collector.collect(armed, making.progress, exposed, std::ref(arrived));
+            collector.collect(armed, progress_, exposed, std::ref(arrived));
         if (!cameBack) return done;
-        if (rebooted_ && !link_->lost()) return *std::exchange(rebooted_, std::nullopt);
-        if (auto asked = askForHeld(armed, making.progress); !asked) return asked;
+        if (!link_->lost()) {
+            if (auto told = tellReboot()) return *told;
+        }
+        if (auto asked = askForHeld(armed); !asked) return asked;
     }
 }
 
@@ -351,13 +346,7 @@ Result<FramePlan> Rig::apply(const CaptureRequest& request) {
 Result<ArmedCapture> Rig::arm(const CaptureRequest& request, int frames, Turn turn) {
     const Result<FramePlan> plan = apply(request);
     if (!plan) return plan.error();
-    ArmedCapture armed{.expected = {.bootId = link_->ident().bootId,
-                                    .captureId = 0,
-                                    .frames = frames,
-                                    .frameBytes = geometry_->frameBytes,
-                                    .maxChunkPayload = link_->ident().maxChunkPayload,
-                                    .held = framesHeld()},
-                       .plan = *plan};
+    ArmedCapture armed{.expected = sized(frames), .plan = *plan};
     for (int tries = 1;; ++tries) {
         armed.expected.captureId = ids_.next(request.planStep);
         const Result<void> expected = turn == Turn::Present ? assembler_.expect(armed.expected)
@@ -373,31 +362,64 @@ Result<ArmedCapture> Rig::arm(const CaptureRequest& request, int frames, Turn tu
     }
 }
 
+/// A capture of so many frames of the present window, not numbered yet.
+ExpectedCapture Rig::sized(int frames) const {
+    return {.bootId = link_->ident().bootId,
+            .captureId = 0,
+            .frames = frames,
+            .frameBytes = geometry_->frameBytes,
+            .maxChunkPayload = link_->ident().maxChunkPayload,
+            .held = framesHeld()};
+}
+
 /// So many may come while a frame is asked for twice: RESEND queues behind what waits in the rig,
 /// which is at most what its RAM holds.
 int Rig::framesHeld() const { return 2 * link_->ident().frameRam + 2; }
 
-/// So many frames of both together may be held as they were sent.
-bool Rig::haveMemoryFor(int frames, int next) const {
-    const auto both = static_cast<std::size_t>(std::min(frames, framesHeld())) +
+/// There is memory for the frames of both together. With a sink it waits already: none is made
+/// while frames are on their way.
+bool Rig::mayArmAhead(const Making& making) const {
+    if (!making.ahead.next || !making.request.keepLit) return false;
+    if (link_->ident().frameRam < kFramesToOverlap) return false;
+    const int frames = making.request.frames, next = making.ahead.next->frames;
+    const auto held = static_cast<std::size_t>(std::min(frames, framesHeld())) +
                       static_cast<std::size_t>(std::min(next, framesHeld()));
-    return both <= CaptureFrames::kMaxOpenBytes / geometry_->frameBytes;
+    if (held > CaptureFrames::kMaxOpenBytes / geometry_->frameBytes) return false;
+    if (!making.sink) return true;
+    const MemoryNeed need = needed(making.request, making.ahead, true);
+    return assembler_.hasRoomForNext(need.largest, need.wire) &&
+           pixels_.most(geometry_->window.sent()) >= need.pixels && progress_.hasRoom(next);
 }
 
 /// Without a sink all frames are kept. What would need too much is refused when it is expected.
-void Rig::provideMemory(const CaptureRequest& request, const ArmAhead& ahead, bool sink) {
+Rig::MemoryNeed Rig::needed(const CaptureRequest& request, const ArmAhead& ahead, bool sink) const {
     const int frames = request.frames, next = ahead.next ? ahead.next->frames : 0;
     const auto held = [&](int n) { return static_cast<std::size_t>(std::min(n, framesHeld())); };
     const auto kept = [&](int n) { return sink ? held(n) : static_cast<std::size_t>(n); };
-    const Size size = geometry_->window.sent();
     const std::size_t limit = CaptureFrames::kMaxOpenBytes;
+    const std::size_t pixelBytes = geometry_->window.sent().pixels() * sizeof(std::uint16_t);
     // Frames of the present capture are read as they become whole: beside all of the next, two are
     // on their way. What a sink leaves of the present is the next's.
     const std::size_t wire = std::max(held(frames), held(next)) + 2;
     const std::size_t pixels =
         sink ? std::max(kept(frames), kept(next)) : kept(frames) + kept(next);
-    assembler_.provide(geometry_->frameBytes, std::min(wire, limit / geometry_->frameBytes));
-    pixels_.provide(size, std::min(pixels, limit / (size.pixels() * sizeof(std::uint16_t))));
+    return {.largest = sized(std::max(frames, next)),
+            .wire = std::min(wire, limit / geometry_->frameBytes),
+            .pixels = std::min(pixels, limit / pixelBytes)};
+}
+
+/// Of a capture that is on its way already, what a sink has kept is replaced, and no more is made;
+/// without a sink there must be as many new frames as are asked for.
+void Rig::provideMemory(const CaptureRequest& request, const ArmAhead& ahead, bool sink) {
+    const MemoryNeed need = needed(request, ahead, sink);
+    const Size size = geometry_->window.sent();
+    if (ahead_ && sink) return pixels_.provide(size, std::min(need.pixels, pixels_.most(size)));
+    if (!ahead_) {
+        assembler_.makeRoom(need.largest);
+        progress_.makeRoom(need.largest.frames);
+    }
+    assembler_.provide(geometry_->frameBytes, need.wire);
+    pixels_.provide(size, need.pixels);
 }
 
 /// Idle, with nothing on its way: not of the last attempt, nor of what was armed ahead.

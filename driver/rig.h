@@ -25,6 +25,7 @@
 // serial number is never taken back.
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -106,7 +107,8 @@ public:
     /// configure() and close(), abort it; nothing of it is ever seen. After a request that is not
     /// to be kept lit nothing is armed, nor on a rig that keeps fewer than three frames for RESEND,
     /// nor where there is no memory for the frames of both, nor what the rig refuses: its own
-    /// capture() then says why.
+    /// capture() then says why. With a sink that memory must be there before `request` is armed:
+    /// one that was armed ahead itself arms nothing that needs more than what came before it.
     /// A `sink` is given each frame as soon as it and those before it are there, in the order of
     /// their index, so that a capture of many frames needs the memory of few. All memory is taken
     /// before anything is armed, for what is armed ahead too; while a sink is busy nothing is read,
@@ -123,6 +125,11 @@ public:
 
     /// Empty: a rig that is lost stays so.
     void onLost(Comeback comeback) { onLost_ = std::move(comeback); }
+    /// Called each time the rig has come back, before the call that was interrupted goes on.
+    void onBack(std::function<void()> back) { onBack_ = std::move(back); }
+    /// That the rig has come back of another boot since the last call, or since configure(); no
+    /// capture() tells it any more. Whoever redoes brackets asks this.
+    [[nodiscard]] std::optional<Error> takeReboot() { return std::exchange(rebooted_, {}); }
     /// Changes when the rig comes back from a loss of its power.
     [[nodiscard]] std::uint32_t bootId() const { return link_->ident().bootId; }
     /// Those since the last call, oldest first.
@@ -149,25 +156,25 @@ private:
     [[nodiscard]] Result<void> check(const CaptureRequest& request) const;
     [[nodiscard]] Result<void> check(const ArmAhead& ahead) const;
     Result<void> admit(const CaptureRequest& request, const ArmAhead& ahead);
-    /// What a capture is made of, through all its attempts.
+    /// What a capture is asked for, through all its attempts.
     struct Making {
         const CaptureRequest& request;
         const ArmAhead& ahead;
         const FrameSink& sink;
-        CaptureProgress& progress;
     };
     Result<void> fill(const Making& making);
     Result<void> collect(const ArmedCapture& armed, const Making& making);
-    Result<void> askForHeld(const ArmedCapture& armed, CaptureProgress& progress);
+    Result<void> askForHeld(const ArmedCapture& armed);
     // Of a rig that was lost (rig_comeback.cpp).
     template <class Work>
     auto surviving(Work work) -> decltype(work());
     template <class Work>
     auto inOneBoot(Work work) -> decltype(work());
     void beginCall();
+    [[nodiscard]] std::optional<Error> tellReboot();
     Result<void> comeBack(const Error& lost);
     [[nodiscard]] Error lostTooOften(const Error& lost) const;
-    Result<void> takeUp(Transport& transport);
+    Result<void> takeUp(Transport& transport, Interruption& gap);
     Result<void> attempt(const Making& making);
     Result<ArmedCapture> takeUpOrArm(const CaptureRequest& request, int frames);
     Result<void> armAhead(const CaptureRequest& request);
@@ -177,7 +184,16 @@ private:
     };
     Result<ArmedCapture> arm(const CaptureRequest& request, int frames, Turn turn);
     [[nodiscard]] int framesHeld() const;
-    [[nodiscard]] bool haveMemoryFor(int frames, int next) const;
+    [[nodiscard]] ExpectedCapture sized(int frames) const;
+    [[nodiscard]] bool mayArmAhead(const Making& making) const;
+    /// Of a capture and the next.
+    struct MemoryNeed {
+        ExpectedCapture largest;
+        std::size_t wire = 0, pixels = 0;  ///< buffers
+    };
+    [[nodiscard]] MemoryNeed needed(const CaptureRequest& request,
+                                    const ArmAhead& ahead,
+                                    bool sink) const;
     void provideMemory(const CaptureRequest& request, const ArmAhead& ahead, bool sink);
     Result<FramePlan> apply(const CaptureRequest& request);
     Result<void> setFormat(const Geometry& geometry);
@@ -185,19 +201,20 @@ private:
     Result<void> quiesce();
     Result<void> abort();
     Result<void> flush();
-    [[nodiscard]] Error failed(const Error& error,
-                               const CaptureProgress& progress,
-                               const Anomalies& before) const;
+    [[nodiscard]] Error failed(const Error& error, const Anomalies& before) const;
 
     std::unique_ptr<RigLink> link_;  ///< empty after a move
     Assembler assembler_;
     PixelMemory pixels_;
+    CaptureProgress progress_;  ///< of the present call of capture()
     std::optional<Geometry> geometry_;
     std::optional<OnItsWay> ahead_;
     CaptureIds ids_;
     Comeback onLost_;
+    std::function<void()> onBack_;
     std::uint32_t boot_ = 0;         ///< of the claim that was taken up last
-    std::optional<Error> rebooted_;  ///< not told yet
+    std::optional<Error> rebooted_;  ///< not taken yet
+    bool rebootTold_ = false;        ///< by a capture
     bool faultTold_ = false;         ///< the fault of the stream that the rig is lost by
     int comebacks_ = 0;              ///< ever
     int mostComebacks_ = 0;          ///< of those, in this call
@@ -217,9 +234,9 @@ auto Rig::surviving(Work work) -> decltype(work()) {
 /// As above, and another boot is an error: first of all, before a loss is mended.
 template <class Work>
 auto Rig::inOneBoot(Work work) -> decltype(work()) {
-    if (auto told = std::exchange(rebooted_, std::nullopt)) return *told;
+    if (auto told = tellReboot()) return *told;
     return surviving([&]() -> decltype(work()) {
-        if (auto told = std::exchange(rebooted_, std::nullopt)) return *told;
+        if (auto told = tellReboot()) return *told;
         return work();
     });
 }

@@ -7,10 +7,6 @@
 namespace gonio::driver {
 namespace {
 
-// Transports that could not be taken up, one after the other: an owner that has nothing better
-// would never end.
-constexpr int kMostTries = 1000;
-
 // In one call: a rig that comes back and is lost again each time, at the same point, would never
 // end either.
 constexpr int kMostComebacks = 20;
@@ -25,10 +21,10 @@ Result<void> Rig::comeBack(const Error& lost) {
     const Clock& clock = link_->clock();
     Interruption gap{.cause = lost.message, .at = clock.now()};
     Error why = lost;
-    for (int tries = 0; tries < kMostTries; ++tries) {
+    while (true) {
         const Result<Transport*> opened = onLost_(why);
         if (!opened) return opened.error();
-        if (auto taken = takeUp(**opened); !taken) {
+        if (auto taken = takeUp(**opened, gap); !taken) {
             why = taken.error();
             link_->abandon(why);
             continue;
@@ -40,20 +36,31 @@ Result<void> Rig::comeBack(const Error& lost) {
                               "rig " + link_->strings().serial + " has lost its power: boot id " +
                                   std::to_string(bootId()) + ", was " + std::to_string(boot) +
                                   "; redo the bracket"};
+            rebootTold_ = false;
         }
         boot_ = bootId();
         faultTold_ = false;
         ++comebacks_;
         interruptions_.push_back(std::move(gap));
+        if (onBack_) onBack_();
         return {};
     }
-    return why;
+}
+
+/// Once.
+std::optional<Error> Rig::tellReboot() {
+    if (!rebooted_ || std::exchange(rebootTold_, true)) return std::nullopt;
+    return rebooted_;
 }
 
 /// Claimed, dark and idle, with nothing on its way. The format is set again even to the same boot:
 /// another program may have had the rig meanwhile.
-Result<void> Rig::takeUp(Transport& transport) {
+Result<void> Rig::takeUp(Transport& transport, Interruption& gap) {
     if (auto claimed = link_->resume(transport); !claimed) return claimed;
+    if (!gap.cutOffDone) gap.cutOffDone = link_->cutOffDone();
+    const Result<Stats> counted = link_->stats();
+    if (!counted && link_->lost()) return counted.error();
+    if (counted) gap.stats = *counted;  // a damaged report is no loss
     if (auto idle = abort(); !idle) return idle;
     return geometry_ ? setFormat(*geometry_) : Result<void>();
 }
@@ -68,9 +75,9 @@ Error Rig::lostTooOften(const Error& lost) const {
 void Rig::beginCall() { mostComebacks_ = comebacks_ + kMostComebacks; }
 
 /// Of the frames still missing, those that the rig holds.
-Result<void> Rig::askForHeld(const ArmedCapture& armed, CaptureProgress& progress) {
-    progress.interrupt();
-    const auto held = Collector(*link_, assembler_, pixels_).askForAll(armed, progress);
+Result<void> Rig::askForHeld(const ArmedCapture& armed) {
+    progress_.interrupt();
+    const auto held = Collector(*link_, assembler_, pixels_).askForAll(armed, progress_);
     if (!held) return held.error();
     if (interruptions_.empty()) return {};  // a sink has taken them
     interruptions_.back().resent += held->held;

@@ -43,10 +43,8 @@ public:
 
     /// Fills the ring with transfers that each hold a chunk of `maxChunkPayload` bytes.
     Result<void> start(std::size_t maxChunkPayload);
-    /// Borrowed until the next call of read() or reset().
+    /// Borrowed until the next call of read() or resetPort().
     [[nodiscard]] Result<std::optional<BulkBytes>> read(Nanoseconds wait);
-    /// SET_INTERFACE(stream, 0): drops what has come.
-    Result<void> reset();
     /// Resets the port, on the stream's own thread; the stream has failed then, for the rig has
     /// lost its link. An error when the port is not reset in a second (it is then reset as soon as
     /// that thread can, also after closing), and at once when the rig is gone: a kernel may try
@@ -81,7 +79,6 @@ private:
     void handleEvents(int milliseconds);
     [[nodiscard]] bool drain();
     void recover(bool stalled);
-    void doReset();
     void doResetPort();
     // With the mutex held:
     void submitIdle();
@@ -105,10 +102,10 @@ private:
     int inFlight_ = 0;
     std::optional<std::chrono::steady_clock::time_point> starvedSince_;  ///< no memory for any
     bool holding_ = true;  ///< nothing is submitted: before start, while draining, after the end
-    bool stalled_ = false, suspect_ = false, resetWanted_ = false;
+    bool stalled_ = false, suspect_ = false;
     bool stopping_ = false, finished_ = false, warned_ = false;
     bool gone_ = false, portResetWanted_ = false;
-    std::optional<Result<void>> resetDone_, portReset_;
+    std::optional<Result<void>> portReset_;
     std::optional<Error> failure_;
     FaultLimit limit_;
 };

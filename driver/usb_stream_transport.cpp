@@ -106,21 +106,6 @@ Result<std::optional<BulkBytes>> UsbStream::read(Nanoseconds wait) {
     return std::optional(BulkBytes(slot.buffer).first(length));
 }
 
-Result<void> UsbStream::reset() {
-    std::unique_lock lock(mutex_);
-    takeBackLent();
-    if (failure_) return *failure_;
-    resetWanted_ = true;
-    resetDone_.reset();
-    lock.unlock();
-    libusb_interrupt_event_handler(context_.get());
-    lock.lock();
-    changed_.wait_until(lock, steadyNow() + kResetLimit, [&] { return resetDone_ || failure_; });
-    if (resetDone_) return *resetDone_;
-    if (!failure_) fail({ErrorKind::Device, "rig " + strings().serial + " does not answer"});
-    return *failure_;
-}
-
 Result<void> UsbStream::resetPort() {
     std::unique_lock lock(mutex_);
     takeBackLent();
@@ -185,12 +170,10 @@ void UsbStream::serve() {
         if (stopping_) break;
         const bool stalled = std::exchange(stalled_, false);
         const bool suspect = std::exchange(suspect_, false);
-        const bool wanted = std::exchange(resetWanted_, false);
         if (failure_) continue;
         if (starvedSince_) submitIdle();
         lock.unlock();
         if (stalled || suspect) recover(stalled);
-        if (wanted) doReset();
     }
     // Whoever closes waits for a second at most. Afterwards, too, all is taken back: as long as
     // this process has the interface, the rig cannot be opened anew.
@@ -283,23 +266,6 @@ void UsbStream::recover(bool stalled) {
     if (again) return fail(streamFault(name));
     holding_ = stopping_;
     submitIdle();
-}
-
-void UsbStream::doReset() {
-    const bool drained = drain();
-    const int code = libusb_set_interface_alt_setting(rig_.handle.get(), rig_.interfaces.stream, 0);
-    std::unique_lock lock(mutex_);
-    stalled_ = suspect_ = false;
-    for (const std::size_t i : ready_) slots_[i].place = Place::Idle;
-    ready_.clear();
-    if (!drained || code != 0) {
-        fail(usbError(code != 0 ? code : LIBUSB_ERROR_IO, "reset the stream"));
-        return;
-    }
-    holding_ = stopping_;
-    submitIdle();
-    resetDone_.emplace();
-    changed_.notify_all();
 }
 
 /// Whatever became of it, the rig has to be opened anew.

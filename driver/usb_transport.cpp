@@ -75,7 +75,6 @@ public:
         }
         return chunk;
     }
-    Result<void> resetStream() override { return stream_->reset(); }
     Result<void> reopenReports() override {
         hid_->askToStop();
         hid_->awaitStop(std::chrono::steady_clock::now() + kReopenLimit);

@@ -133,10 +133,6 @@ Result<Report> WatchedTransport::getFeature(std::uint8_t id) {
     return watched([&] { return target_->getFeature(id); });
 }
 
-Result<void> WatchedTransport::resetStream() {
-    return watched([&] { return target_->resetStream(); });
-}
-
 Result<void> WatchedTransport::reopenReports() {
     return watched([&] { return target_->reopenReports(); });
 }

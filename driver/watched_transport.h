@@ -44,7 +44,6 @@ public:
     [[nodiscard]] Result<std::optional<Report>> readInput(Nanoseconds wait) override;
     /// Ends early, with nothing, when the reports must be looked at again.
     [[nodiscard]] Result<std::optional<BulkBytes>> readBulk(Nanoseconds wait) override;
-    Result<void> resetStream() override;
     Result<void> reopenReports() override;
     Result<void> resetPort() override;
 

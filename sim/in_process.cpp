@@ -21,7 +21,6 @@ constexpr int kFewestTransfers = 2;
 constexpr UsbSetup kGetStatus{.requestType = 0x80, .request = 0, .length = 2};
 constexpr UsbSetup kClearHalt{.requestType = 0x02, .request = 1, .index = usb::kBulkIn};
 constexpr UsbSetup kClearReports{.requestType = 0x02, .request = 1, .index = usb::kInterruptIn};
-constexpr UsbSetup kFlush{.requestType = 0x01, .request = 11, .index = UsbDevice::kStreamInterface};
 
 UsbSetup featureRequest(bool get, std::uint8_t id) {
     constexpr std::uint16_t kFeature = 3 << 8;
@@ -233,12 +232,6 @@ Result<void> InProcessDoor::fillRing() {
         failure_ = Error{ErrorKind::Device, driver::memoryHint(name, 0)};
         return *failure_;
     }
-    return {};
-}
-
-Result<void> InProcessDoor::resetStream() {
-    const auto done = request("flush", [&] { return usb_->control(kFlush); });
-    if (!done) return done.error();
     return {};
 }
 

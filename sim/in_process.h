@@ -41,7 +41,6 @@ public:
     [[nodiscard]] Result<driver::Report> getFeature(std::uint8_t id) override;
     [[nodiscard]] Result<std::optional<driver::Report>> readInput(Nanoseconds wait) override;
     [[nodiscard]] Result<std::optional<driver::BulkBytes>> readBulk(Nanoseconds wait) override;
-    Result<void> resetStream() override;
     Result<void> reopenReports() override;
     Result<void> resetPort() override;
 

@@ -1,11 +1,12 @@
 # gonio_library(NAME SOURCES ... [PUBLIC libs] [PRIVATE libs]): the one target of a folder.
 # gonio_test(NAME LABEL label SOURCES ... LIBS ... [TIMEOUT seconds] [WRAPPER command ...]): a
 # GoogleTest program with one label.
-# gonio_program_test(...): likewise, for tests that run the built programs; uses_programs(NAME) tells a
-# test where they are (GONIO_PROGRAM, GONIO_DAEMON).
+# gonio_program_test(...): likewise, for tests that run the built programs and have no work of their own;
+# uses_programs(NAME) tells a test where they are (GONIO_PROGRAM, GONIO_DAEMON).
 
 # A test's own loops are short: what they call is optimised.
 set(GONIO_TEST_OPTIONS -O1)
+set(GONIO_PROGRAM_TEST_OPTIONS -O0)
 
 add_library(gonio_options INTERFACE)
 target_compile_options(gonio_options INTERFACE
@@ -41,7 +42,12 @@ if(GONIO_PRECOMPILE)
     if(GONIO_BUILD_TESTS)
         precompiled_headers(gonio_test_headers ${GONIO_COMMON_HEADERS} <random> <gtest/gtest.h>)
         target_compile_options(gonio_test_headers PRIVATE ${GONIO_TEST_OPTIONS})
-        target_link_libraries(gonio_test_headers PRIVATE GTest::gtest)
+        precompiled_headers(gonio_program_test_headers
+            ${GONIO_COMMON_HEADERS} <random> <gtest/gtest.h> <nlohmann/json.hpp>)
+        target_compile_options(gonio_program_test_headers PRIVATE ${GONIO_PROGRAM_TEST_OPTIONS})
+        foreach(headers gonio_test_headers gonio_program_test_headers)
+            target_link_libraries(${headers} PRIVATE GTest::gtest nlohmann_json::nlohmann_json)
+        endforeach()
     endif()
 endif()
 
@@ -68,7 +74,7 @@ function(gonio_library name)
 endfunction()
 
 function(gonio_test name)
-    cmake_parse_arguments(TEST "" "LABEL;TIMEOUT;COST" "SOURCES;LIBS;WRAPPER" ${ARGN})
+    cmake_parse_arguments(TEST "RUNS_PROGRAMS" "LABEL;TIMEOUT;COST" "SOURCES;LIBS;WRAPPER" ${ARGN})
     if(NOT TEST_TIMEOUT)
         set(TEST_TIMEOUT 120)
     endif()
@@ -80,9 +86,16 @@ function(gonio_test name)
     target_link_libraries(${name} PRIVATE ${TEST_LIBS} GTest::gtest_main gonio_options)
     target_compile_definitions(${name} PRIVATE
         GONIO_SOURCE_DIR="${CMAKE_SOURCE_DIR}" GONIO_DATA_DIR="${GONIO_DATA_DIR}")
-    target_compile_options(${name} PRIVATE ${GONIO_TEST_OPTIONS})
+    if(TEST_RUNS_PROGRAMS)
+        set(options ${GONIO_PROGRAM_TEST_OPTIONS})
+        set(headers gonio_program_test_headers)
+    else()
+        set(options ${GONIO_TEST_OPTIONS})
+        set(headers gonio_test_headers)
+    endif()
+    target_compile_options(${name} PRIVATE ${options})
     if(GONIO_PRECOMPILE)
-        target_precompile_headers(${name} REUSE_FROM gonio_test_headers)
+        target_precompile_headers(${name} REUSE_FROM ${headers})
     endif()
     if(TEST_WRAPPER)
         set_target_properties(${name} PROPERTIES CROSSCOMPILING_EMULATOR "${TEST_WRAPPER}")
@@ -98,6 +111,6 @@ function(uses_programs name)
 endfunction()
 
 function(gonio_program_test name)
-    gonio_test(${name} ${ARGN})
+    gonio_test(${name} RUNS_PROGRAMS ${ARGN})
     uses_programs(${name})
 endfunction()

@@ -28,8 +28,8 @@ struct DeviceStrings {
     std::string protocol;  ///< string descriptor 240, e.g. "GRP/1.0"
 };
 
-/// Of one bulk transfer: one chunk, or whatever came. Borrowed until the next call of readBulk,
-/// resetStream or resetPort, and no longer than the transport lives.
+/// Of one bulk transfer: one chunk, or whatever came. Borrowed until the next call of readBulk or
+/// resetPort, and no longer than the transport lives.
 using BulkBytes = std::span<const std::uint8_t>;
 
 class Transport {
@@ -49,8 +49,6 @@ public:
     [[nodiscard]] virtual Result<std::optional<Report>> readInput(Nanoseconds wait) = 0;
     /// The next bulk transfer, or nothing when `wait` has passed.
     [[nodiscard]] virtual Result<std::optional<BulkBytes>> readBulk(Nanoseconds wait) = 0;
-    /// SET_INTERFACE(1, 0): flush the stream; it also clears a halt.
-    virtual Result<void> resetStream() = 0;
     /// Closes the report side and opens it anew: for reports that have fallen silent.
     virtual Result<void> reopenReports() = 0;
     /// Resets the rig's port. The rig loses its link by it: dark, flushed, the session lapsed.

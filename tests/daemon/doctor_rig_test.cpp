@@ -43,7 +43,6 @@ public:
         }
         return door.readBulk(wait);
     }
-    Result<void> resetStream() override { return door.resetStream(); }
     Result<void> reopenReports() override { return door.reopenReports(); }
     Result<void> resetPort() override { return door.resetPort(); }
 

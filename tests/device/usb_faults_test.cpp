@@ -4,10 +4,8 @@
 
 #include <thread>
 
-#include "driver/usb_ledger.h"
 #include "tests/device/usb_rig_fixture.h"
 #include "tests/device/without_rights.h"
-#include "tests/support/wait_until.h"
 
 namespace gonio::device_test {
 namespace {
@@ -120,12 +118,6 @@ TEST_F(UsbFaults, WithTheNextCaptureArmedFaultsChangeNoFrame) {
     }
     EXPECT_GE(rig->anomalies().badLengths, 3U);
     EXPECT_GE(rig->anomalies().lostChunks, 3U);
-}
-
-TEST_F(UsbFaults, AResetStreamGoesOnWithWholeFrames) {
-    repaired(litFrames(1, 2));
-    ASSERT_TRUE(transport->resetStream());
-    repaired(litFrames(2, 2));
 }
 
 TEST_F(UsbFaults, WaitingForNothingEndsAtItsDeadline) {
@@ -265,21 +257,6 @@ TEST_F(UsbRigTest, OfTwoRigsTheSerialNumberSaysWhich) {
     const auto third = driver::openUsb({.serial = "SIM-0044"});
     ASSERT_FALSE(third);
     EXPECT_EQ(third.error().kind, ErrorKind::NoRig);
-}
-
-TEST_F(UsbFaults, APortThatCouldNotBeResetInTimeIsResetAfterwards) {
-    mock.live().with([](sim::FaultyUsb& usb) { usb.cause(sim::FaultKind::HangUntilReset); });
-    EXPECT_FALSE(transport->resetStream());  // the kernel waits on
-    (void)transport->resetPort();
-    rig.reset();
-    transport.reset();
-    EXPECT_TRUE(test::waitUntil([&] {
-        const bool hung = mock.live().with([](sim::FaultyUsb& usb) { return usb.hung(); });
-        return !hung && driver::usbLedger().streams == 0;
-    }));
-    transport = opened();
-    ASSERT_TRUE(transport);
-    EXPECT_TRUE(Rig::open(*transport, kSession));
 }
 
 TEST_F(UsbRigTest, ARigThatIsSilentWhenItIsOpenedGetsItsPortReset) {

@@ -20,6 +20,7 @@ public:
         : rig_(rig), broken_(std::move(broken)) {}
 
     long calls = 0;
+    bool brokeAtWrite = false;  ///< so that the rig has not heard the command
     long breaksAt = std::numeric_limits<long>::max();  ///< this call fails, and all after it
     bool over = false;                                 ///< nobody may touch it any more
     long touches = 0;                                  ///< although it is over
@@ -34,6 +35,7 @@ public:
     }
     [[nodiscard]] const Clock& clock() const override { return rig_.clock(); }
     Result<void> write(const Report& report) override {
+        brokeAtWrite = calls == breaksAt;
         return through([&] { return rig_.write(report); });
     }
     Result<void> setFeature(const Report& report) override {
@@ -47,9 +49,6 @@ public:
     }
     [[nodiscard]] Result<std::optional<BulkBytes>> readBulk(Nanoseconds wait) override {
         return through([&] { return rig_.readBulk(wait); });
-    }
-    Result<void> resetStream() override {
-        return through([&] { return rig_.resetStream(); });
     }
     Result<void> reopenReports() override {
         ++reopens;

@@ -203,10 +203,6 @@ public:
         return std::optional<BulkBytes>(lent_);
     }
 
-    Result<void> resetStream() override {
-        stream.clear();
-        return {};
-    }
     Result<void> reopenReports() override {
         inputs_.clear();
         if (reopensToHear > 0 && --reopensToHear == 0) mute = false;

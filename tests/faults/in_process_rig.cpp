@@ -32,7 +32,6 @@ public:
         if (over()) return end();
         return door_->readBulk(wait);
     }
-    Result<void> resetStream() override { return door_->resetStream(); }
     Result<void> reopenReports() override { return door_->reopenReports(); }
     Result<void> resetPort() override { return door_->resetPort(); }
     [[nodiscard]] const sim::InProcessDoor::Counters& counters() const { return door_->counters(); }

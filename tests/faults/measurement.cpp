@@ -59,9 +59,6 @@ public:
     Result<std::optional<driver::BulkBytes>> readBulk(Nanoseconds wait) override {
         return timed(wait, [&] { return inner_->readBulk(wait); });
     }
-    Result<void> resetStream() override {
-        return timed(0ns, [&] { return inner_->resetStream(); });
-    }
     Result<void> reopenReports() override {
         return timed(0ns, [&] { return inner_->reopenReports(); });
     }

@@ -46,8 +46,8 @@ mutant(F08 inproc protocol/chunk.cpp
     [[transfer.size() - seen.headerBytes != header.length]] [[false]])
 mutant(F09 inproc assembler.cpp [[static_cast<std::uint32_t>(jump)]] [[0U]])
 mutant(F10 inproc protocol/chunk.cpp [[get<std::uint32_t>(transfer, 48) != crc]] [[false]])
-mutant(F10-for-good inproc rig.cpp [[progress.recaptures == kRecaptures]]
-    [[progress.recaptures == 2 * kRecaptures]])
+mutant(F10-for-good inproc rig.cpp [[progress_.recaptures == kRecaptures]]
+    [[progress_.recaptures == 2 * kRecaptures]])
 mutant(F11 inproc capture_frames.cpp [=[begun->second.have[header.chunkIndex]]=] [[false]])
 mutant(F12 inproc capture_frames.cpp [[header.captureId == expected_.captureId]] [[true]])
 mutant(F13 inproc link.cpp [[ack && !*ack]] [[false]])

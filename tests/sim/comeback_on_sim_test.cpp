@@ -54,6 +54,20 @@ void expectEqual(const std::vector<Frame>& seen, const std::vector<Frame>& wante
     }
 }
 
+/// As the rig had them, but for its uptime.
+void expectCounters(const driver::Stats& seen, const driver::Stats& wanted) {
+    EXPECT_EQ(seen.framesMade, wanted.framesMade);
+    EXPECT_EQ(seen.commandsDone, wanted.commandsDone);
+    EXPECT_EQ(seen.resends, wanted.resends);
+    EXPECT_EQ(seen.lapses, wanted.lapses);
+}
+
+/// A gap is no anomaly of the stream, and no fault of the reports.
+void expectNothingCounted(driver::Rig& rig) {
+    EXPECT_EQ(rig.anomalies(), driver::Anomalies{}) << rig.anomalies().text();
+    EXPECT_EQ(rig.link().counters(), driver::LinkCounters{});
+}
+
 TEST(ComebackOnSim, ACablePulledAtAnyCallCostsNoFrame) {
     sim::InProcessDoor twin({.errors = {}});
     placeGrey(twin.device());
@@ -66,8 +80,10 @@ TEST(ComebackOnSim, ACablePulledAtAnyCallCostsNoFrame) {
         sim::InProcessDoor door({.errors = {}});
         placeGrey(door.device());
         driver::test::Replugged plugs(door, [&] { door.device().linkLost(); });
+        driver::Stats then;
         plugs.onPlug = [&](driver::test::LooseCable&) {
             door.device().advanceTo(door.device().now() + 3s);  // the gap
+            then = door.device().stats();
         };
         auto rig = driver::Rig::open(plugs.cable(), kSession);
         ASSERT_TRUE(rig) << rig.error().message;
@@ -83,12 +99,66 @@ TEST(ComebackOnSim, ACablePulledAtAnyCallCostsNoFrame) {
             EXPECT_GE(gap.lasted, 3s);
             resent += gap.resent;
             redone += gap.redone;
+            expectCounters(gap.stats, then);
         }
+        expectNothingCounted(*rig);
         if (plugs.losses.empty() || HasFailure()) break;
     }
     EXPECT_GT(cut, 40);
     EXPECT_GT(resent, 0);
     EXPECT_GT(redone, 0);
+}
+
+TEST(ComebackOnSim, CountersBeginAnewWithAnotherBootAndNothingIsHeldAgainstIt) {
+    sim::InProcessDoor door({.errors = {}});
+    placeGrey(door.device());
+    driver::test::Replugged plugs(door, [&] { door.device().powerCycle(); });
+    plugs.onPlug = [&](driver::test::LooseCable&) {
+        door.device().advanceTo(door.device().now() + 3s);
+    };
+    auto rig = driver::Rig::open(plugs.cable(), kSession);
+    ASSERT_TRUE(rig->configure(kWindow));
+    rig->onLost(plugs.comeback());
+    (void)taken(*rig);
+    const auto before = rig->link().stats();
+    ASSERT_TRUE(before);
+    EXPECT_EQ(before->framesMade, 6U);
+    plugs.cable().breaksAt = plugs.cable().calls;
+    EXPECT_FALSE(rig->capture(kRequest)) << "another boot is told";
+    (void)taken(*rig);
+    const auto gaps = rig->takeInterruptions();
+    ASSERT_EQ(gaps.size(), 1U);
+    EXPECT_FALSE(gaps[0].sameBoot);
+    EXPECT_EQ(gaps[0].stats.framesMade, 0U);
+    EXPECT_EQ(gaps[0].stats.commandsDone, 0U);
+    EXPECT_EQ(rig->link().stats()->framesMade, 6U) << "of this boot";
+    expectNothingCounted(*rig);
+}
+
+TEST(ComebackOnSim, AfterTheThirdStallTheRigIsDarkAndFreeForAnyOther) {
+    sim::InProcessDoor door({.errors = {}});
+    placeGrey(door.device());
+    auto rig = driver::Rig::open(door, kSession);
+    ASSERT_TRUE(rig->configure(kWindow));
+    bool lit = false;
+    const auto capture = rig->capture(kRequest, {}, [&](const Frame&) -> Result<void> {
+        lit = lit || door.device().lit();
+        door.usb().cause(sim::FaultKind::StallBulk);
+        return {};
+    });
+    ASSERT_FALSE(capture);
+    EXPECT_NE(capture.error().message.find("three times in 10 s"), std::string::npos)
+        << capture.error().message;
+    EXPECT_TRUE(lit);
+    EXPECT_FALSE(door.device().lit());
+    const auto free = door.openAgain();
+    ASSERT_TRUE(free);
+    const Nanoseconds then = door.device().now();
+    auto other = driver::Rig::open(**free, kSession + 1);
+    ASSERT_TRUE(other) << other.error().message;
+    EXPECT_LT(door.device().now() - then, 100ms);
+    ASSERT_TRUE(other->configure(kWindow));
+    EXPECT_TRUE(other->capture(kRequest));
 }
 
 }  // namespace

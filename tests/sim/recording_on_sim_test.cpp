@@ -68,7 +68,6 @@ public:
         damaged_[random_() % damaged_.size()] ^= 4;
         return std::optional<BulkBytes>(damaged_);
     }
-    Result<void> resetStream() override { return inner_.resetStream(); }
     Result<void> reopenReports() override { return inner_.reopenReports(); }
     Result<void> resetPort() override { return inner_.resetPort(); }
 

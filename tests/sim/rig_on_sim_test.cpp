@@ -317,7 +317,6 @@ public:
         if (chunk && *chunk && lost_(random_)) return std::optional<driver::BulkBytes>{};
         return chunk;
     }
-    Result<void> resetStream() override { return door.resetStream(); }
     Result<void> reopenReports() override { return door.reopenReports(); }
     Result<void> resetPort() override { return door.resetPort(); }
 

@@ -6,7 +6,7 @@
 
 #include "driver/rig.h"
 #include "sim/in_process.h"
-#include "tests/driver/allocation_watch.h"
+#include "tests/driver/watched_chain.h"
 
 namespace gonio {
 namespace {
@@ -24,10 +24,13 @@ driver::CaptureRequest dark(std::uint64_t planStep, int frames) {
             .frames = frames};
 }
 
+using driver::test::chainOf;
+using driver::test::takeChain;
+
 struct Opened {
     sim::InProcessDoor door{{.errors = {}}};
-    driver::test::AllocationWatch watched{door, false};
-    Result<driver::Rig> rig = driver::Rig::open(watched, kSession);
+    driver::test::ArmWatch watch{door, driver::test::ArmWatch::Behind::Simulator};
+    Result<driver::Rig> rig = driver::Rig::open(watch, kSession);
 
     Opened() {
         EXPECT_TRUE(rig) << rig.error().message;
@@ -35,28 +38,53 @@ struct Opened {
     }
 };
 
-/// Allocations between the last ARM of a capture and its last frame.
+/// Allocations between the ARM of a capture and its last frame.
 template <class Take>
 std::size_t allocated(driver::Rig& rig, const driver::CaptureRequest& request, Take take) {
     int left = request.frames;
-    std::size_t seen = 0;
+    (void)driver::test::takeSpent();
     const auto capture = rig.capture(request, {}, [&](Frame&& frame) -> Result<void> {
-        if (--left == 0) {
-            seen = driver::test::allocationsSeen();
-            driver::test::stopWatching();
-        }
+        if (--left == 0) driver::test::captureTaken();
         take(std::move(frame));
         return {};
     });
     EXPECT_TRUE(capture) << capture.error().message;
     EXPECT_EQ(left, 0);
-    return seen;
+    return driver::test::takeSpent().allocations;
 }
 
 TEST(Streaming, AllocatesNothingAfterArm) {
     Opened on;
     EXPECT_EQ(allocated(*on.rig, dark(1, 100), [](const Frame&) {}), 0U);
     EXPECT_EQ(allocated(*on.rig, dark(2, 100), [](const Frame&) {}), 0U);
+}
+
+TEST(Streaming, AllocatesNothingAfterArmAlongAChainThatIsArmedAhead) {
+    Opened on;
+    const auto seen = takeChain(*on.rig, on.watch, chainOf(dark(1, 0), {8, 3, 8, 1, 5, 8, 8, 2}));
+    EXPECT_EQ(seen.spent.allocations, 0U);
+    EXPECT_EQ(seen.frames, 43);
+    EXPECT_EQ(seen.ahead, (std::vector<bool>{false, true, true, true, true, true, true, true}));
+}
+
+TEST(Streaming, WhatNeedsMoreMemoryInAChainIsArmedInItsTurn) {
+    Opened on;
+    const auto seen = takeChain(*on.rig, on.watch, chainOf(dark(1, 0), {2, 3, 20, 60, 60, 1}));
+    EXPECT_EQ(seen.spent.allocations, 0U) << "it is made before an ARM, never after";
+    EXPECT_EQ(seen.ahead, (std::vector<bool>{false, true, false, true, true, true}))
+        << "20 frames and 60 were prepared for together";
+}
+
+TEST(Streaming, CopiesEachByteOnceOnItsWayToTheFrame) {
+#ifdef __SANITIZE_ADDRESS__
+    GTEST_SKIP() << "address sanitizer has copies of its own";
+#endif
+    Opened on;
+    const auto seen = takeChain(*on.rig, on.watch, chainOf(dark(1, 0), {8, 8, 8}));
+    const auto sent = static_cast<std::size_t>(seen.frames) *
+                      *driver::frameBytes(kWindow, driver::PixelFormat::Mono12Packed);
+    EXPECT_GE(seen.spent.bytesCopied, sent);
+    EXPECT_LT(seen.spent.bytesCopied, sent + sent / 20) << "but for headers and reports";
 }
 
 TEST(Streaming, AFewFramesThatTheSinkKeepsWereAllocatedBeforeArm) {
