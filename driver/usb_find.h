@@ -67,6 +67,16 @@ struct OpenedRig {
 [[nodiscard]] std::string textIn(std::span<const std::uint8_t> descriptor);
 /// It has the descriptors of a SuperSpeed device, whatever the port gives it.
 [[nodiscard]] bool canSuperSpeed(const OpenedRig& rig);
+/// One control request, answered in 200 ms: 0, or libusb's error.
+[[nodiscard]] int askWhetherThere(const OpenedRig& rig);
+/// It is there and does not answer that request: it hangs.
+[[nodiscard]] bool isSilent(const OpenedRig& rig);
+/// 0, or libusb's error. The rig has to be opened anew.
+[[nodiscard]] int resetPortOf(const OpenedRig& rig);
+/// Resets the port of a silent rig, once until it has answered. False: that was done, another
+/// program has it, or it did not help.
+[[nodiscard]] bool wake(const OpenedRig& rig);
+void noteAnswer(const OpenedRig& rig);
 /// Takes the stream interface, from a kernel driver too.
 Result<void> claimStream(const OpenedRig& rig);
 

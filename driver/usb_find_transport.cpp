@@ -4,6 +4,8 @@
 #include <array>
 #include <fstream>
 #include <functional>
+#include <mutex>
+#include <set>
 
 #include "driver/usb_find.h"
 
@@ -31,6 +33,31 @@ std::string placeOf(libusb_device* device) {
     }
     return place;
 }
+
+/// Where a port was reset, and the rig has not answered since.
+class PlacesReset {
+public:
+    static void add(const std::string& place) {
+        const std::scoped_lock lock(one().mutex_);
+        one().places_.insert(place);
+    }
+    static void remove(const std::string& place) {
+        const std::scoped_lock lock(one().mutex_);
+        one().places_.erase(place);
+    }
+    [[nodiscard]] static bool have(const std::string& place) {
+        const std::scoped_lock lock(one().mutex_);
+        return one().places_.contains(place);
+    }
+
+private:
+    static PlacesReset& one() {
+        static PlacesReset places;
+        return places;
+    }
+    std::mutex mutex_;
+    std::set<std::string> places_;
+};
 
 /// The kernel's copy of the serial number, which needs no permission to read.
 std::string knownSerial(const std::string& place) {
@@ -218,6 +245,38 @@ bool canSuperSpeed(const OpenedRig& rig) {
     }
     libusb_free_bos_descriptor(bos);
     return can;
+}
+
+int askWhetherThere(const OpenedRig& rig) {
+    constexpr unsigned kProbeMs = 200;
+    std::array<std::uint8_t, 2> status{};
+    const int got = libusb_control_transfer(rig.handle.get(),
+                                            LIBUSB_ENDPOINT_IN,
+                                            LIBUSB_REQUEST_GET_STATUS,
+                                            0,
+                                            0,
+                                            status.data(),
+                                            static_cast<std::uint16_t>(status.size()),
+                                            kProbeMs);
+    if (got == static_cast<int>(status.size())) return 0;
+    return got < 0 ? got : LIBUSB_ERROR_IO;
+}
+
+bool isSilent(const OpenedRig& rig) { return askWhetherThere(rig) == LIBUSB_ERROR_TIMEOUT; }
+
+int resetPortOf(const OpenedRig& rig) {
+    PlacesReset::add(placeOf(libusb_get_device(rig.handle.get())));
+    const int code = libusb_reset_device(rig.handle.get());
+    return code == LIBUSB_ERROR_NOT_FOUND ? 0 : code;  // it shows up anew
+}
+
+bool wake(const OpenedRig& rig) {
+    const bool before = PlacesReset::have(placeOf(libusb_get_device(rig.handle.get())));
+    return !before && claimStream(rig) && resetPortOf(rig) == 0;
+}
+
+void noteAnswer(const OpenedRig& rig) {
+    PlacesReset::remove(placeOf(libusb_get_device(rig.handle.get())));
 }
 
 Result<void> claimStream(const OpenedRig& rig) {

@@ -5,9 +5,9 @@
 // at the start it has failed at once.
 // Nothing is allocated after start(). A transfer that nobody has read, or that the reader still
 // looks at, is not in flight: a slow reader holds the rig back and loses nothing.
-// STALL: all transfers are drained, the halt is cleared, and the stream goes on; OVERFLOW: that
-// chunk is dropped; ERROR: one control request decides whether the rig is still there. A third
-// stall or error in ten seconds is a failure, and a failure is final.
+// STALL or ERROR: all transfers are drained, and one control request decides whether the rig is
+// still there; then a halt is cleared, and the stream goes on. OVERFLOW: that chunk is dropped. A
+// third stall or error in ten seconds is a failure, and a failure is final.
 
 #include <chrono>
 #include <condition_variable>
@@ -46,8 +46,9 @@ public:
     /// Borrowed until the next call of read() or resetPort().
     [[nodiscard]] Result<std::optional<BulkBytes>> read(Nanoseconds wait);
     /// Resets the port, on the stream's own thread; the stream has failed then, for the rig has
-    /// lost its link. An error when the port is not reset in a second, and at once when the rig is
-    /// gone: a kernel may try for seconds to reset a port that nothing is at.
+    /// lost its link. An error when the port is not reset in a second (it is then reset as soon as
+    /// that thread can, also after closing), and at once when the rig is gone: a kernel may try
+    /// for seconds to reset a port that nothing is at.
     Result<void> resetPort();
     /// Asks the thread to end, and waits for it until `deadline`; a thread that is not done then
     /// keeps this object alive by itself, and the rig is Busy until its transfers are back.
@@ -79,7 +80,6 @@ private:
     [[nodiscard]] bool drain();
     void recover(bool stalled);
     void doResetPort();
-    [[nodiscard]] int askWhetherThere();
     // With the mutex held:
     void submitIdle();
     void inFlight(int change);

@@ -2,7 +2,6 @@
 #include <pthread.h>
 
 #include <algorithm>
-#include <array>
 #include <memory>
 #include <utility>
 
@@ -24,7 +23,6 @@ constexpr auto kDrainLimit = 500ms;
 constexpr auto kResetLimit = 1s;
 constexpr auto kLeftBehind = 60s;  // then the kernel will not give back what it has
 constexpr auto kPause = 20ms;      // before libusb is asked again after it has failed
-constexpr unsigned kProbeMs = 200;
 
 SteadyTime steadyNow() { return std::chrono::steady_clock::now(); }
 
@@ -163,15 +161,15 @@ void UsbStream::serve() {
     while (true) {
         handleEvents(100);
         std::unique_lock lock(mutex_);
-        if (stopping_) break;
-        const bool stalled = std::exchange(stalled_, false);
-        const bool suspect = std::exchange(suspect_, false);
-        const bool port = std::exchange(portResetWanted_, false);
-        if (port) {
+        // Who asks for it gives up in a second and closes: the rig needs it all the same.
+        if (std::exchange(portResetWanted_, false)) {
             lock.unlock();
             doResetPort();
             continue;
         }
+        if (stopping_) break;
+        const bool stalled = std::exchange(stalled_, false);
+        const bool suspect = std::exchange(suspect_, false);
         if (failure_) continue;
         if (starvedSince_) submitIdle();
         lock.unlock();
@@ -245,11 +243,13 @@ bool UsbStream::drain() {
     return left() == 0;
 }
 
-/// PROTOCOL.md 4: a stall is cleared; after an error one control request decides.
+/// PROTOCOL.md 4: one control request decides whether it is there; then a stall is cleared. The
+/// kernel would wait for seconds to clear the halt of a rig that hangs.
 void UsbStream::recover(bool stalled) {
     const bool drained = drain();
-    const int probe = stalled ? 0 : askWhetherThere();
-    const int cleared = stalled ? libusb_clear_halt(rig_.handle.get(), rig_.interfaces.bulkIn) : 0;
+    const int probe = askWhetherThere(rig_);
+    const int cleared =
+        stalled && probe == 0 ? libusb_clear_halt(rig_.handle.get(), rig_.interfaces.bulkIn) : 0;
     const bool again = limit_.third(steadyNow().time_since_epoch());
     std::unique_lock lock(mutex_);
     ++(stalled ? counters_.stalls : counters_.errors);
@@ -271,30 +271,15 @@ void UsbStream::recover(bool stalled) {
 /// Whatever became of it, the rig has to be opened anew.
 void UsbStream::doResetPort() {
     (void)drain();
-    const int code = libusb_reset_device(rig_.handle.get());
+    const int code = resetPortOf(rig_);
     std::unique_lock lock(mutex_);
     const std::string name = "rig " + strings().serial;
-    if (code == 0 || code == LIBUSB_ERROR_NOT_FOUND) {  // the latter: it shows up anew
+    if (code == 0) {
         portReset_.emplace();
     } else {
         portReset_.emplace(usbError(code, "reset the port of " + name));
     }
     fail({ErrorKind::Device, name + ": its port was reset"});
-}
-
-/// 0: it is there.
-int UsbStream::askWhetherThere() {
-    std::array<std::uint8_t, 2> status{};
-    const int got = libusb_control_transfer(rig_.handle.get(),
-                                            LIBUSB_ENDPOINT_IN,
-                                            LIBUSB_REQUEST_GET_STATUS,
-                                            0,
-                                            0,
-                                            status.data(),
-                                            static_cast<std::uint16_t>(status.size()),
-                                            kProbeMs);
-    if (got == static_cast<int>(status.size())) return 0;
-    return got < 0 ? got : LIBUSB_ERROR_IO;
 }
 
 // ---- with the mutex held

@@ -99,6 +99,14 @@ struct Chosen {
 Result<Chosen> choose(const FoundRig& found) {
     auto opened = openRig(found);
     if (!opened) return opened.error();
+    if (opened->strings.serial.empty() && isSilent(*opened)) {
+        const bool woken = wake(*opened);
+        return Error{
+            ErrorKind::Device,
+            "rig at " + found.rig.place + " does not answer; " +
+                (woken ? "its port was reset, open it again" : "check its cable and power")};
+    }
+    noteAnswer(*opened);
     return Chosen{.opened = std::move(*opened), .place = found.rig.place};
 }
 

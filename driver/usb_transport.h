@@ -7,7 +7,8 @@
 // A device that the system might put to sleep is kept awake, or a warning says that it may not be.
 // No rig: NoRig. No permission, or claimed by another program: Busy, and the message says what to
 // do; both may pass, as a device node may get its permissions late. Gone, or silent: Device, and so
-// is every call from then on; open it anew.
+// is every call from then on; open it anew. A rig that is silent when it is opened gets its port
+// reset, once until it has answered.
 
 #include <cstdint>
 #include <memory>

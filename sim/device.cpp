@@ -52,7 +52,7 @@ void Device::setInterlock(std::uint8_t bits) {
     } else if (!could && mayLight()) {
         raise(event::kInterlockClosed, bits, 0);
     }
-    pushStatus();
+    tellChange();
 }
 
 std::uint64_t Device::clockUs() const {
@@ -69,7 +69,7 @@ void Device::overheat(bool hot) {
         abort(status::kOverTemp);
         fault_ = status::kOverTemp;
     }
-    pushStatus();
+    tellChange();
 }
 
 void Device::powerCycle() {
@@ -77,6 +77,7 @@ void Device::powerCycle() {
     startClean();
     frames_ = {};
     notices_ = {};
+    statusAt_.reset();
     stats_ = {};
     fault_ = 0;
     nextFrame_ = 1;
@@ -98,7 +99,7 @@ void Device::sendUnknownChunk() {
 
 void Device::tellUnknownEvent() {
     raise(kUnknownEvent, 0, 0);
-    pushStatus();
+    tellChange();
 }
 
 void Device::pileUpReports(int count) {
@@ -115,19 +116,22 @@ std::optional<Report> Device::takeInput() { return notices_.take(); }
 
 std::optional<std::vector<std::uint8_t>> Device::takeBulk() { return frames_.take(); }
 
-void Device::resetStream() { frames_.flush(); }
+void Device::flush() {
+    frames_.flush();
+    if (flushed_) flushed_();
+}
 
 // ---- sessions
 
 void Device::claimOrRelease(const SessionSet& set) {
     statusOfLastSet_ = set.release ? release(set) : claim(set);
-    if (statusOfLastSet_ == status::kOk) pushStatus();
+    if (statusOfLastSet_ == status::kOk) tellChange();
 }
 
 std::uint16_t Device::release(const SessionSet& set) {
     if (claim_.owner() == Owner::None || claim_.id() != set.sessionId) return status::kNotOwner;
     abort(0);
-    frames_.flush();
+    flush();
     raise(event::kEnded, claim_.lowId(), 0);
     claim_ = {};
     return status::kOk;
@@ -148,7 +152,7 @@ std::uint16_t Device::claim(const SessionSet& set) {
 
 void Device::startClean() {
     abort(0);
-    frames_.flush();
+    flush();
     claim_ = {};
     current_ = {};
     due_.clear();
@@ -162,7 +166,7 @@ void Device::checkHeartbeat() {
     raise(event::kHeartbeatLost,
           static_cast<std::uint32_t>(claim_.silence(now_).count() / 1'000'000),
           claim_.lowId());
-    pushStatus();
+    tellChange();
 }
 
 /// Control is lost: dark, and what the rig was doing ends. Frame RAM and ACKs stay.
@@ -172,14 +176,13 @@ void Device::lapse(std::uint16_t reason) {
         ++stats_.lapses;
     }
     abort(reason);
-    frames_.flush();
+    flush();
 }
 
-void Device::linkLost() {
-    constexpr std::uint32_t kBusReset = 1;
+void Device::linkLost(std::uint32_t cause) {
     lapse(status::kLink);
-    raise(event::kLinkLost, kBusReset, 0);
-    pushStatus();
+    raise(event::kLinkLost, cause, 0);
+    tellChange();
 }
 
 // ---- exposures
@@ -206,7 +209,7 @@ void Device::abort(std::uint16_t reason) {
     }
     exposing_.reset();
     capture_.reset();
-    pushStatus();
+    tellChange();
 }
 
 void Device::applyDueSettings() {
@@ -250,7 +253,7 @@ void Device::finishExposure() {
         capture_.reset();
         for (const auto& [frame, settings] : due_) takeEffect(settings);
         due_.clear();
-        pushStatus();
+        tellChange();
     }
 }
 

@@ -53,9 +53,12 @@ public:
     void output(const driver::Report& report);
     [[nodiscard]] std::optional<driver::Report> takeInput();
     [[nodiscard]] std::optional<std::vector<std::uint8_t>> takeBulk();
-    void resetStream();
+    void resetStream() { flush(); }
+    /// Told when the stream was flushed: a chunk that is half sent is dropped then, too.
+    void onFlush(std::function<void()> flushed) { flushed_ = std::move(flushed); }
     /// Bus reset, configuration or VBUS loss: dark, aborted, flushed, and the session lapses.
-    void linkLost();
+    /// `cause`: the argument of the event.
+    void linkLost(std::uint32_t cause = 1);
 
     /// Lets time pass to `now`: exposures, status reports, the heartbeat's watch.
     void advanceTo(Nanoseconds now);
@@ -76,6 +79,8 @@ public:
     [[nodiscard]] std::uint64_t clockUs() const;
     /// Power was lost and is back: another boot, with nothing left of the one before.
     void powerCycle();
+    /// It was told to reboot, and has to leave the bus within 100 ms and lose its power. Once.
+    [[nodiscard]] bool takeReboot() { return std::exchange(rebootWanted_, false); }
     /// Sends a chunk of a type, or tells an event of a code, that no host knows.
     void sendUnknownChunk();
     void tellUnknownEvent();
@@ -106,7 +111,6 @@ private:
     std::uint16_t trigger(std::uint64_t captureId, driver::Arguments& result);
     std::uint16_t resend(const driver::Resend& args);
     std::uint16_t clearFault();
-    void reboot();
     [[nodiscard]] std::uint32_t applySettings(const Settings& wanted);
     void takeEffect(const Settings& wanted);
     [[nodiscard]] Settings settingsToCome() const;
@@ -118,6 +122,7 @@ private:
     [[nodiscard]] driver::RigState state() const;
     [[nodiscard]] Temperatures temperatures() const;
     void pushStatus();
+    void tellChange();
     void raise(std::uint16_t code, std::uint32_t arg0, std::uint32_t arg1);
 
     // Sessions.
@@ -140,6 +145,7 @@ private:
     [[nodiscard]] Image<std::uint16_t> exposed(const Exposing& done, const NoiseKey& key);
     void abort(std::uint16_t reason);
     void goDark();
+    void flush();
     [[nodiscard]] bool freeRunning() const { return capture_ && !capture_->software; }
     [[nodiscard]] bool mayLight() const;
 
@@ -170,6 +176,7 @@ private:
     bool unsettled_ = false;  // the lit LED has not settled before an exposure yet
     Nanoseconds earliestStart_{0};
 
+    std::function<void()> flushed_;
     std::function<FrameFlaw()> flaw_;
     Settings before_;               ///< of the exposure before
     Image<std::uint16_t> picture_;  ///< the last one
@@ -178,6 +185,8 @@ private:
     Notices notices_;
     std::uint16_t nextStatusSequence_ = 0;
     Nanoseconds nextStatusAt_{0};
+    std::optional<Nanoseconds> statusAt_;  ///< of the last one
+    bool rebootWanted_ = false;
 };
 
 }  // namespace gonio::sim

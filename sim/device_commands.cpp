@@ -11,6 +11,12 @@ namespace gonio::sim {
 
 using namespace driver;  // the wire's words
 
+namespace {
+
+constexpr std::uint16_t kRetryMs = 20;  // of what waits for the stream to be read
+
+}  // namespace
+
 void Device::output(const Report& report) {
     const Result<Command> command = decodeCommand(report);
     if (!command) {
@@ -29,6 +35,10 @@ Ack Device::execute(const Command& command) {
     Ack ack = carryOut(command);
     if (command.op == Op::Reboot) return ack;  // it has forgotten who asked
     if (ack.status != status::kOk) ack.result = {};
+    if (ack.status == status::kBusy) {  // nothing was done: the same command comes again
+        ack.retryMs = kRetryMs;
+        return ack;
+    }
     ++stats_.commandsDone;
     claim_.keep(command, ack);
     return ack;
@@ -49,12 +59,15 @@ Ack Device::carryOut(const Command& command) {
         case Op::Abort: abort(0); break;
         case Op::Resend: ack.status = resend(decodeResend(arguments)); break;
         case Op::Flush:
-            frames_.flush();
+            flush();
             ack.result = encodeU32(frames_.nextSequence());
             break;
         case Op::SyncTime: ack.result = encodeU64(clockUs()); break;
         case Op::ClearFault: ack.status = clearFault(); break;
-        case Op::Reboot: reboot(); break;
+        case Op::Reboot:
+            abort(0);
+            rebootWanted_ = true;
+            break;
         default: ack.status = status::kUnsupported; break;
     }
     return ack;
@@ -66,8 +79,6 @@ std::uint16_t Device::clearFault() {
     fault_ = 0;
     return status::kOk;
 }
-
-void Device::reboot() { powerCycle(); }
 
 /// What the settings will be when all that waits is in effect.
 Settings Device::settingsToCome() const { return due_.empty() ? current_ : due_.back().second; }
@@ -103,7 +114,7 @@ std::uint16_t Device::setLed(const SetLed& args, Arguments& result) {
     wanted.led = dark ? -1 : args.led;
     wanted.levels = args.levels;
     result = encodeU32(applySettings(wanted));
-    pushStatus();
+    tellChange();
     return status::kOk;
 }
 
@@ -154,7 +165,7 @@ std::uint16_t Device::arm(const Arm& args, Arguments& result) {
     result = encodeU32(nextFrame_);
     earliestStart_ = std::max(earliestStart_, now_);
     beginExposureIfDue();
-    pushStatus();
+    tellChange();
     return status::kOk;
 }
 

@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::int16_t kTooHot = 8500;  // 0.01 degC: past LIMITS' sensor_temperature
 constexpr Nanoseconds kStatusPeriod = std::chrono::milliseconds(100);
+constexpr Nanoseconds kStatusPause = std::chrono::milliseconds(10);  // between two on change
 
 /// The levels at which all bands are as bright as the dimmest.
 std::array<std::uint16_t, 3> whiteBalance() {
@@ -120,7 +121,14 @@ void Device::raise(std::uint16_t code, std::uint32_t arg0, std::uint32_t arg1) {
 void Device::pushStatus() {
     ++nextStatusSequence_;
     notices_.tell(status());
+    statusAt_ = now_;
     nextStatusAt_ = now_ + kStatusPeriod;
+}
+
+/// Of several changes in a short time the last STATUS tells.
+void Device::tellChange() {
+    if (!statusAt_ || now_ - *statusAt_ >= kStatusPause) return pushStatus();
+    nextStatusAt_ = std::min(nextStatusAt_, *statusAt_ + kStatusPause);
 }
 
 std::optional<Report> Device::getFeature(std::uint8_t id) {

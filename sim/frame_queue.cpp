@@ -27,7 +27,8 @@ void FrameQueue::add(Frame frame) {
 
 void FrameQueue::add(std::vector<std::uint8_t> chunk, bool resent) {
     restamp(chunk, nextSequence_++, resent);
-    waiting_.push_back(std::move(chunk));
+    waiting_.push_back({.chunk = std::move(chunk), .resent = resent});
+    resentWaiting_ += resent ? 1 : 0;
 }
 
 FrameQueue::Resent FrameQueue::resend(const Resend& wanted) {
@@ -40,6 +41,8 @@ FrameQueue::Resent FrameQueue::resend(const Resend& wanted) {
     if (wanted.firstChunk > last || last >= frame->chunks.size()) {
         return {.status = status::kBadRange};
     }
+    if (resentWaiting_ + (last - wanted.firstChunk + 1) > kFrameRam * frame->chunks.size())
+        return {.status = status::kBusy};
     for (std::size_t i = wanted.firstChunk; i <= last; ++i) add(frame->chunks[i], true);
     return {.status = status::kOk,
             .chunks = static_cast<std::uint32_t>(last - wanted.firstChunk + 1)};
@@ -47,9 +50,10 @@ FrameQueue::Resent FrameQueue::resend(const Resend& wanted) {
 
 std::optional<std::vector<std::uint8_t>> FrameQueue::take() {
     if (waiting_.empty()) return std::nullopt;
-    std::vector<std::uint8_t> chunk = std::move(waiting_.front());
+    Waiting next = std::move(waiting_.front());
     waiting_.pop_front();
-    return chunk;
+    resentWaiting_ -= next.resent ? 1 : 0;
+    return std::move(next.chunk);
 }
 
 bool FrameQueue::holds(std::uint64_t capture) const {
@@ -58,7 +62,8 @@ bool FrameQueue::holds(std::uint64_t capture) const {
 }
 
 std::size_t FrameQueue::framesWaiting() const {
-    return static_cast<std::size_t>(std::count_if(waiting_.begin(), waiting_.end(), isTrailer));
+    return static_cast<std::size_t>(std::count_if(
+        waiting_.begin(), waiting_.end(), [](const Waiting& one) { return isTrailer(one.chunk); }));
 }
 
 }  // namespace gonio::sim

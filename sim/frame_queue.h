@@ -11,7 +11,7 @@
 
 namespace gonio::sim {
 
-/// Frames that are kept for RESEND; as many may wait to be sent.
+/// Frames that are kept for RESEND; as many may wait to be sent, and as many to be sent again.
 inline constexpr std::size_t kFrameRam = 8;
 
 class FrameQueue {
@@ -24,7 +24,8 @@ public:
     /// Queues its chunks and keeps it; the oldest is forgotten.
     void add(Frame frame);
     void add(std::vector<std::uint8_t> chunk, bool resent = false);
-    /// Queues them once more. Status FRAME_GONE, BAD_RANGE or OK, and how many there were.
+    /// Queues them once more. Status FRAME_GONE, BAD_RANGE, BUSY (more would wait to be sent again
+    /// than the RAM holds: later) or OK, and how many there were.
     struct Resent {
         std::uint16_t status = 0;
         std::uint32_t chunks = 0;
@@ -33,7 +34,10 @@ public:
 
     [[nodiscard]] std::optional<std::vector<std::uint8_t>> take();
     /// Nothing waits any more; the frame RAM stays.
-    void flush() { waiting_.clear(); }
+    void flush() {
+        waiting_.clear();
+        resentWaiting_ = 0;
+    }
     void forgetFrames() { ram_.clear(); }
 
     [[nodiscard]] bool holds(std::uint64_t capture) const;
@@ -42,7 +46,12 @@ public:
 
 private:
     std::deque<Frame> ram_;
-    std::deque<std::vector<std::uint8_t>> waiting_;
+    struct Waiting {
+        std::vector<std::uint8_t> chunk;
+        bool resent = false;
+    };
+    std::deque<Waiting> waiting_;
+    std::size_t resentWaiting_ = 0;
     std::uint32_t nextSequence_ = 1;
 };
 

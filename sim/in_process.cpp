@@ -196,15 +196,16 @@ Result<std::optional<driver::BulkBytes>> InProcessDoor::readBulk(Nanoseconds wai
     return std::optional<driver::BulkBytes>{};
 }
 
-/// PROTOCOL.md 4: a stall is cleared; after an error one control request decides.
+/// PROTOCOL.md 4: one control request decides whether it is there; then a stall is cleared.
 Result<void> InProcessDoor::recover(UsbAnswer answer) {
     if (answer == UsbAnswer::Overflow) {
         ++counters_.overflows;
         return {};
     }
     const bool stalled = answer == UsbAnswer::Stall;
-    const auto decided = request(stalled ? "clear halt" : "probe",
-                                 [&] { return usb_->control(stalled ? kClearHalt : kGetStatus); });
+    auto decided = request("probe", [&] { return usb_->control(kGetStatus); });
+    if (decided && stalled)
+        decided = request("clear halt", [&] { return usb_->control(kClearHalt); });
     if (!decided) return decided.error();
     ++(stalled ? counters_.stalls : counters_.errors);
     if (limit_.third(now())) {

@@ -42,7 +42,12 @@ UsbReply answerOrStall(const std::optional<std::vector<std::uint8_t>>& data, std
 }  // namespace
 
 UsbDevice::UsbDevice(DeviceConfig config, UsbIds ids)
-    : kind_(config.camera), device_(std::move(config)), ids_(ids) {}
+    : kind_(config.camera), device_(std::move(config)), ids_(ids) {
+    device_.onFlush([this] {
+        dropHalfSent();
+        if (flushed_) flushed_();
+    });
+}
 
 std::vector<std::uint8_t> UsbDevice::deviceDescriptor() const {
     return usb::deviceDescriptor(ids_, kind_);
@@ -106,7 +111,6 @@ UsbReply UsbDevice::standard(const UsbSetup& setup) {
             if (setup.value != 0 || setup.index > kStreamInterface) return stall();
             if (setup.index == kStreamInterface) {
                 halted_ = false;
-                dropHalfSent();
                 device_.resetStream();
             }
             return done();
@@ -186,10 +190,11 @@ void UsbDevice::dropHalfSent() {
     open_ = false;
 }
 
-void UsbDevice::reset() {
+void UsbDevice::reset(Loss loss) {
+    constexpr std::uint32_t kBusReset = 1, kVbus = 3;  // PROTOCOL.md, event 14
     halted_ = false;
     dropHalfSent();
-    device_.linkLost();
+    device_.linkLost(loss == Loss::Power ? kVbus : kBusReset);
 }
 
 }  // namespace gonio::sim

@@ -51,8 +51,12 @@ public:
     using ChunkSource = std::function<std::optional<std::vector<std::uint8_t>>()>;
 
     explicit UsbDevice(DeviceConfig config, UsbIds ids = {});
+    UsbDevice(const UsbDevice&) = delete;
+    UsbDevice& operator=(const UsbDevice&) = delete;
     /// Chunks come from here and no longer from the device itself.
     void takeChunksFrom(ChunkSource source) { source_ = std::move(source); }
+    /// Told when the stream was flushed, whoever did it.
+    void onFlush(std::function<void()> flushed) { flushed_ = std::move(flushed); }
 
     [[nodiscard]] Device& device() { return device_; }
     [[nodiscard]] const Device& device() const { return device_; }
@@ -75,8 +79,12 @@ public:
 
     /// The bulk endpoint stalls until its halt is cleared.
     void haltStream() { halted_ = true; }
-    /// Bus reset, or the cable was pulled: what was half sent is lost.
-    void reset();
+    enum class Loss {
+        BusReset,
+        Power  ///< of the bus: the cable was pulled
+    };
+    /// What was half sent is lost.
+    void reset(Loss loss = Loss::BusReset);
 
 private:
     UsbReply standard(const UsbSetup& setup);
@@ -86,6 +94,7 @@ private:
     void dropHalfSent();
 
     ChunkSource source_;
+    std::function<void()> flushed_;
     CameraKind kind_;
     Device device_;
     UsbIds ids_;

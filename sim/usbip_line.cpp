@@ -31,21 +31,25 @@ UsbSetup setupOf(const Submit& submit) {
 }
 
 /// USB/IP does not tell of a bus reset. Linux follows it with a request for 64 bytes of the device
-/// descriptor, which nobody else makes.
+/// descriptor, of a SuperSpeed device 8, which nobody else makes.
 UsbReply control(FaultyUsb& usb, const UsbSetup& setup, std::span<const std::uint8_t> out) {
+    const std::uint16_t first = usb.kind() == CameraKind::Usb3 ? 8 : 64;
     const bool enumerates = setup.requestType == 0x80 && setup.request == 6 &&
-                            setup.value == 0x0100 && setup.length == 64;
+                            setup.value == 0x0100 && setup.length == first;
     if (enumerates) usb.resetPort();
     return usb.control(setup, out);
 }
 
 }  // namespace
 
-UsbipLine::UsbipLine(LiveRig& rig, StreamSocket& socket, usbip::Bytes early)
+UsbipLine::UsbipLine(LiveRig& rig,
+                     StreamSocket& socket,
+                     usbip::Bytes early,
+                     std::optional<int> pulls)
     : rig_(rig),
       socket_(socket),
       inbox_(std::move(early)),
-      pulls_(rig.with([](FaultyUsb& usb) { return usb.pulls(); })) {
+      pulls_(pulls ? *pulls : rig.with([](FaultyUsb& usb) { return usb.pulls(); })) {
     rig_.listen([this](const std::vector<std::uint8_t>& report) {
         const std::scoped_lock lock(mutex_);
         // Of a stalled endpoint one transfer is told; the next one after that is told again.
@@ -70,6 +74,7 @@ bool UsbipLine::idle() const {
 }
 
 Result<void> UsbipLine::serve(const std::stop_token& stop) {
+    stop_ = stop;
     usbip::Bytes buffer(kReadAtOnce);
     bool busy = true;
     while (!stop.stop_requested() && !pulled()) {
@@ -127,18 +132,27 @@ Result<void> UsbipLine::take(Submit submit) {
             ErrorKind::Device,
             "usbip: more than " + std::to_string(kMostWaiting) + " transfers wait at one endpoint"};
     }
+    if (*queue == kInterruptIn) reopenReports();
     waiting_[*queue].push_back(std::move(submit));
     return {};
 }
 
+/// A driver that closes the reports takes all back that waits for them.
+void UsbipLine::reopenReports() {
+    if (!std::exchange(reportsClosed_, false)) return;
+    rig_.with([](FaultyUsb& usb) { usb.reportsOpened(); });
+}
+
 Result<void> UsbipLine::take(const usbip::Unlink& unlink) {
     bool found = false;
+    const bool listened = !waiting_[kInterruptIn].empty();
     for (auto& queue : waiting_) {
         found = std::erase_if(
                     queue, [&](const Submit& submit) { return submit.sequence == unlink.victim; }) >
                     0 ||
                 found;
     }
+    if (listened && waiting_[kInterruptIn].empty()) reportsClosed_ = true;
     return send(usbip::unlinkReply(unlink.sequence, found ? -ECONNRESET : 0));
 }
 
@@ -197,6 +211,7 @@ std::optional<UsbipLine::Outcome> UsbipLine::outcome(Queue queue, const Submit& 
 Result<void> UsbipLine::end(const Submit& submit, Outcome outcome) {
     int& status = outcome.status;
     usbip::Bytes& data = outcome.data;
+    if (!submit.in) data.clear();  // whatever its setup says
     if (submit.in && data.size() > submit.length) {
         status = -EOVERFLOW;
         data.clear();
@@ -212,7 +227,7 @@ Result<void> UsbipLine::end(const Submit& submit, Outcome outcome) {
 }
 
 Result<void> UsbipLine::send(std::span<const std::uint8_t> bytes) {
-    return socket_.write(bytes, kPatience) ? Result<void>() : gone();
+    return socket_.write(bytes, kPatience, stop_) ? Result<void>() : gone();
 }
 
 }  // namespace gonio::sim

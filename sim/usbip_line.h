@@ -7,6 +7,7 @@
 #include <array>
 #include <deque>
 #include <mutex>
+#include <optional>
 #include <stop_token>
 
 #include "sim/live_rig.h"
@@ -18,7 +19,11 @@ namespace gonio::sim {
 class UsbipLine {
 public:
     /// Both are borrowed. `early`: what was read before, behind the request to attach.
-    UsbipLine(LiveRig& rig, StreamSocket& socket, usbip::Bytes early = {});
+    /// `pulls`: of the rig's cable when it was plugged in here; empty: now.
+    UsbipLine(LiveRig& rig,
+              StreamSocket& socket,
+              usbip::Bytes early = {},
+              std::optional<int> pulls = {});
     ~UsbipLine();
     UsbipLine(const UsbipLine&) = delete;
     UsbipLine& operator=(const UsbipLine&) = delete;
@@ -41,6 +46,7 @@ private:
     [[nodiscard]] static std::optional<Queue> queueOf(const usbip::Submit& submit);
     Result<void> takeCommands();
     Result<void> take(usbip::Submit submit);
+    void reopenReports();
     Result<void> take(const usbip::Unlink& unlink);
     /// True: a transfer has ended.
     Result<bool> advance();
@@ -58,6 +64,8 @@ private:
     StreamSocket& socket_;
     usbip::Bytes inbox_;
     int pulls_;
+    bool reportsClosed_ = false;  ///< the client has taken back all that waited for reports
+    std::stop_token stop_;
     std::array<std::deque<usbip::Submit>, kQueues> waiting_;
     std::mutex mutex_;  ///< of the reports, which the rig hands on in a thread of its own
     std::deque<usbip::Bytes> reports_;

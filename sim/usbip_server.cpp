@@ -132,6 +132,7 @@ UsbipServer::UsbipServer(StreamSocket listener, int port, std::vector<LiveRig*> 
     for (LiveRig* rig : rigs) {
         Served& served = served_.emplace_back();
         served.rig = rig;
+        served.serial = serial(rig);
         served.exported = exported(*rig, static_cast<std::uint32_t>(served_.size()));
     }
     acceptor_ = std::jthread([this](const std::stop_token& stop) { accept(stop); });
@@ -142,6 +143,13 @@ UsbipServer::~UsbipServer() {
     acceptor_.join();
     for (Connection& connection : connections_) connection.thread.request_stop();
     connections_.clear();
+}
+
+std::vector<UsbipServer::Listed> UsbipServer::all() {
+    std::vector<Listed> list;
+    for (const Served& served : served_)
+        list.push_back({.serial = served.serial, .busId = served.exported.busId});
+    return list;
 }
 
 std::vector<usbip::Exported> UsbipServer::rigs() {
@@ -175,6 +183,7 @@ void UsbipServer::accept(const std::stop_token& stop) {
 void UsbipServer::admit(StreamSocket socket) {
     const int yes = 1;
     setsockopt(socket.descriptor(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
+    socket.watchOtherEnd();
     Connection& connection = connections_.emplace_back();
     connection.thread = std::jthread(
         [this, &connection, socket = std::move(socket)](const std::stop_token& stop) mutable {
@@ -195,7 +204,7 @@ void UsbipServer::converse(StreamSocket socket, const std::stop_token& stop) {
             inbox.erase(inbox.begin(), inbox.begin() + static_cast<std::ptrdiff_t>(length));
             if (asked.kind == usbip::Request::Kind::Import)
                 return import(asked.busId, socket, std::move(inbox), stop);
-            (void)socket.write(usbip::listReply(rigs()), kPatience);
+            (void)socket.write(usbip::listReply(rigs()), kPatience, stop);
             return;
         }
         const auto read = socket.read(buffer, std::chrono::milliseconds(kLookMs));
@@ -213,7 +222,7 @@ void UsbipServer::import(const std::string& busId,
         return served.exported.busId == busId;
     });
     const auto refuse = [&](ImportStatus status) {
-        (void)socket.write(usbip::importReply(status, {}), kPatience);
+        (void)socket.write(usbip::importReply(status, {}), kPatience, stop);
     };
     if (found == served_.end() || !plugged(*found->rig)) return refuse(ImportStatus::NoDevice);
     if (found->taken.exchange(true)) return refuse(ImportStatus::Busy);
@@ -221,7 +230,7 @@ void UsbipServer::import(const std::string& busId,
     {
         UsbipLine line(*found->rig, socket, std::move(early));
         Result<void> served;
-        if (socket.write(usbip::importReply(ImportStatus::Ok, found->exported), kPatience))
+        if (socket.write(usbip::importReply(ImportStatus::Ok, found->exported), kPatience, stop))
             served = line.serve(stop);
         tell(busId + " detached" + (served ? "" : ": " + served.error().message));
     }

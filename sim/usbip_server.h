@@ -42,6 +42,11 @@ public:
     UsbipServer& operator=(const UsbipServer&) = delete;
 
     [[nodiscard]] int port() const { return port_; }
+    /// All that it serves, also those that are not plugged in.
+    struct Listed {
+        std::string serial, busId;
+    };
+    [[nodiscard]] std::vector<Listed> all();
     /// Those that are plugged in.
     [[nodiscard]] std::vector<usbip::Exported> rigs();
     /// Serves one client more, who came another way, in the caller's thread until that one is gone.
@@ -50,6 +55,7 @@ public:
 private:
     struct Served {
         LiveRig* rig = nullptr;
+        std::string serial;
         usbip::Exported exported;
         std::atomic<bool> taken{false};
     };

@@ -21,7 +21,8 @@ namespace {
 
 constexpr const char* kFolder = "/sys/devices/platform/vhci_hcd.0";
 constexpr std::chrono::milliseconds kLook{10};
-constexpr unsigned kFree = 4;  // VDEV_ST_NULL of the kernel
+constexpr std::chrono::milliseconds kAgain{200};  // after the kernel has refused it
+constexpr unsigned kFree = 4;                     // VDEV_ST_NULL of the kernel
 
 std::string why(int error) { return std::generic_category().message(error); }
 
@@ -70,10 +71,12 @@ std::optional<unsigned> freeVhciPort(const std::string& status, const std::strin
 }
 
 struct VhciCable::Line {
-    Line(LiveRig& rig, int descriptor) : socket(descriptor) {
-        thread = std::jthread([this, &rig](const std::stop_token& stop) {
-            UsbipLine line(rig, socket);
-            (void)line.serve(stop);
+    Line(LiveRig& rig, int descriptor, int pulls) : socket(descriptor) {
+        thread = std::jthread([this, &rig, pulls](const std::stop_token& stop) {
+            {
+                UsbipLine line(rig, socket, {}, pulls);
+                (void)line.serve(stop);
+            }  // it resets the rig and no longer listens before there is another line
             shutdown(socket.descriptor(), SHUT_RDWR);  // the kernel sees the cable pulled now
             ended = true;
         });
@@ -97,25 +100,29 @@ Result<std::unique_ptr<VhciCable>> VhciCable::attach(LiveRig& rig, unsigned numb
 
 void VhciCable::follow(const std::stop_token& stop) {
     while (!stop.stop_requested()) {
-        std::this_thread::sleep_for(kLook);
-        if (!line_->ended) continue;
+        std::this_thread::sleep_for(obstacle_.empty() ? kLook : kAgain);
+        if (line_ && !line_->ended) continue;
         // A rig that the kernel has let go of by itself is not attached again until it is plugged.
         const bool again =
             rig_.with([this](FaultyUsb& usb) { return usb.plugged() && usb.pulls() != pulls_; });
         if (!again) continue;
-        if (const auto plugged = plug(); !plugged) log::warning(plugged.error().message);
+        const auto plugged = plug();
+        const std::string obstacle = plugged ? "" : plugged.error().message;
+        if (!obstacle.empty() && obstacle != obstacle_) log::warning(obstacle);
+        obstacle_ = obstacle;
     }
 }
 
 Result<void> VhciCable::plug() {
-    pulls_ = rig_.with([](FaultyUsb& usb) { return usb.pulls(); });
+    line_.reset();
+    const int pulls = rig_.with([](FaultyUsb& usb) { return usb.pulls(); });
     const usbip::Exported rig = exported(rig_, number_);
     const auto port = freePort(rig.speed == usbip::Speed::Super);
     if (!port) return port.error();
     std::array<int, 2> ends{};
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
         return Error{ErrorKind::Internal, "vhci: socketpair: " + why(errno)};
-    auto line = std::make_unique<Line>(rig_, ends[0]);
+    auto line = std::make_unique<Line>(rig_, ends[0], pulls);
     const auto words = std::to_string(*port) + " " + std::to_string(ends[1]) + " " +
                        std::to_string(rig.bus << 16 | rig.number) + " " +
                        std::to_string(static_cast<unsigned>(rig.speed));
@@ -123,6 +130,7 @@ Result<void> VhciCable::plug() {
     ::close(ends[1]);  // the kernel has it
     if (!attached) return attached;
     line_ = std::move(line);
+    pulls_ = pulls;
     return {};
 }
 

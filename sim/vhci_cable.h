@@ -40,6 +40,7 @@ private:
     unsigned number_;
     int pulls_ = 0;  ///< of the rig when it was attached last
     std::unique_ptr<Line> line_;
+    std::string obstacle_;  ///< why it could not be plugged in last time, of the following thread
     std::jthread follower_;
 };
 

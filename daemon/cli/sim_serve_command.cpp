@@ -53,11 +53,12 @@ Result<void> check(const SimServeOptions& options) {
     }
     for (const std::string& serial : serials) {
         const bool printable =
-            std::all_of(serial.begin(), serial.end(), [](char c) { return c >= ' ' && c <= '~'; });
+            std::all_of(serial.begin(), serial.end(), [](char c) { return c > ' ' && c <= '~'; });
         if (serial.empty() || serial.size() > 32 || !printable) {
-            return Error{ErrorKind::Usage,
-                         "sim serve: --serial '" + serial +
-                             "': a serial number has 1 to 32 printable ASCII characters"};
+            return Error{
+                ErrorKind::Usage,
+                "sim serve: --serial '" + serial +
+                    "': a serial number has 1 to 32 printable ASCII characters and no blanks"};
         }
     }
     return {};
@@ -81,8 +82,6 @@ Result<std::optional<sim::FaultScript>> scriptOf(const SimServeOptions& options)
 Result<Rigs> makeRigs(const CommonOptions& common, const SimServeOptions& options) {
     auto store = Store::open(common.store);
     if (!store) return store.error();
-    const auto script = scriptOf(options);
-    if (!script) return script.error();
     Rigs rigs;
     std::vector<std::string> serials = options.serials;
     std::sort(serials.begin(), serials.end());
@@ -97,12 +96,15 @@ Result<Rigs> makeRigs(const CommonOptions& common, const SimServeOptions& option
         auto placement = makePlacement(state, *store);
         if (!placement) return placement.error();
         rigs.push_back(std::make_unique<sim::LiveRig>(*config));
-        rigs.back()->with([&](sim::FaultyUsb& usb) {
-            usb.device().place(std::move(*placement));
-            if (*script) usb.play(**script);
-        });
+        rigs.back()->with([&](sim::FaultyUsb& usb) { usb.device().place(std::move(*placement)); });
     }
     return rigs;
+}
+
+/// On all rigs, from this moment.
+void play(const std::optional<sim::FaultScript>& script, const Rigs& rigs) {
+    if (!script) return;
+    for (const auto& rig : rigs) rig->with([&](sim::FaultyUsb& usb) { usb.play(*script); });
 }
 
 std::string attachLine(const SimServeOptions& options, int port, const std::string& busId) {
@@ -126,6 +128,7 @@ void announce(const CommonOptions& common, const Json& document) {
 Result<void> serveOverTcp(const CommonOptions& common,
                           const SimServeOptions& options,
                           const Rigs& rigs,
+                          const std::optional<sim::FaultScript>& script,
                           const EndSignals& signals) {
     std::vector<sim::LiveRig*> borrowed;
     for (const auto& rig : rigs) borrowed.push_back(rig.get());
@@ -136,23 +139,24 @@ Result<void> serveOverTcp(const CommonOptions& common,
         sim::UsbipServer::open(borrowed, {.host = options.bind, .port = options.port}, note);
     if (!server) return server.error();
     Json list = Json::array();
-    const auto served = (*server)->rigs();
-    for (std::size_t i = 0; i < served.size(); ++i) {
-        list.push_back({{"serial", serialOf(*rigs[i])},
-                        {"bus_id", served[i].busId},
-                        {"how", attachLine(options, (*server)->port(), served[i].busId)}});
+    for (const auto& rig : (*server)->all()) {
+        list.push_back({{"serial", rig.serial},
+                        {"bus_id", rig.busId},
+                        {"how", attachLine(options, (*server)->port(), rig.busId)}});
     }
     announce(common,
              {{"schema", "gonio/sim-serve/1"},
               {"host", options.bind},
               {"port", (*server)->port()},
               {"rigs", list}});
+    play(script, rigs);
     signals.await();
     return {};
 }
 
 Result<void> serveToKernel(const CommonOptions& common,
                            const Rigs& rigs,
+                           const std::optional<sim::FaultScript>& script,
                            const EndSignals& signals) {
     std::vector<std::unique_ptr<sim::VhciCable>> cables;
     Json list = Json::array();
@@ -165,6 +169,7 @@ Result<void> serveToKernel(const CommonOptions& common,
     announce(
         common,
         {{"schema", "gonio/sim-serve/1"}, {"host", nullptr}, {"port", nullptr}, {"rigs", list}});
+    play(script, rigs);
     signals.await();
     return {};
 }
@@ -174,10 +179,12 @@ Result<void> serveToKernel(const CommonOptions& common,
 Result<void> simServe(const CommonOptions& common, const SimServeOptions& options) {
     if (auto good = check(options); !good) return good;
     const EndSignals signals;
+    const auto script = scriptOf(options);
+    if (!script) return script.error();
     const auto rigs = makeRigs(common, options);
     if (!rigs) return rigs.error();
-    return options.usbip ? serveOverTcp(common, options, *rigs, signals)
-                         : serveToKernel(common, *rigs, signals);
+    return options.usbip ? serveOverTcp(common, options, *rigs, *script, signals)
+                         : serveToKernel(common, *rigs, *script, signals);
 }
 
 }  // namespace gonio::daemon

@@ -92,6 +92,11 @@ std::optional<DueFault> FaultPlayer::timed(Nanoseconds now) {
     return fired(entry.rule);
 }
 
+void FaultPlayer::takeEnds(const FaultPlayer& other) {
+    for (const auto& [when, entry] : other.agenda_)
+        if (entry.rule == kNoRule && entry.fault.isEnd) agenda_.emplace(when, entry);
+}
+
 bool FaultPlayer::lucky(State& state) {
     const auto rule = static_cast<std::size_t>(&state - states_.data());
     const auto turn = static_cast<std::uint64_t>(state.seen++);

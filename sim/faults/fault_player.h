@@ -19,6 +19,7 @@ struct DueFault {
     int count = 1;
     Nanoseconds time{0};
     Nanoseconds lasting{0};  ///< 0: it does not end by itself
+    bool isEnd = false;      ///< of one that lasted for a while
     std::string name;
     std::uint64_t key = 0;  ///< for what else is random in it
 };
@@ -34,6 +35,8 @@ public:
     [[nodiscard]] std::optional<DueFault> timed(Nanoseconds now);
     /// Puts a fault off.
     void later(Nanoseconds when, DueFault fault) { agenda_.emplace(when, Entry{std::move(fault)}); }
+    /// Takes over the ends that are still due in another's agenda.
+    void takeEnds(const FaultPlayer& other);
 
     /// A chunk is sent: the so-manieth of its frame, frames counted from 1.
     struct Place {

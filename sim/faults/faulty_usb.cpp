@@ -49,6 +49,7 @@ std::optional<FaultKind> endOf(FaultKind kind) {
 FaultyUsb::FaultyUsb(DeviceConfig config, UsbIds ids)
     : config_(config), usb_(std::move(config), ids), mostTransfers_(kPlenty) {
     usb_.takeChunksFrom([this] { return nextChunk(); });
+    usb_.onFlush([this] { chunks_.clear(); });
 }
 
 void FaultyUsb::play(FaultScript script) {
@@ -58,7 +59,9 @@ void FaultyUsb::play(FaultScript script) {
         });
     };
     if (std::any_of(script.rules.begin(), script.rules.end(), comesAgain)) chunks_.rememberFrames();
-    player_ = FaultPlayer(std::move(script), now());
+    FaultPlayer player(std::move(script), now());
+    player.takeEnds(player_);
+    player_ = std::move(player);
     framesSent_ = 0;
     chunkOfFrame_ = -1;
     device().flawFrames([this] { return flawOfExposure(); });
@@ -93,13 +96,37 @@ void FaultyUsb::putOff(const std::vector<DueFault>& faults) {
     for (const DueFault& fault : faults) player_.later(now(), fault);
 }
 
+/// The cable has two ends, as it lies there with the rig's power or without.
+Nanoseconds& FaultyUsb::endOfCondition(FaultKind end) {
+    return endsAt_[end == FaultKind::PlugRebooted ? FaultKind::Plug : end];
+}
+
+/// Of several at the same thing the last end counts, and none where one has no end.
 void FaultyUsb::endLater(const DueFault& fault) {
-    const auto end = endOf(fault.kind);
-    if (end && fault.lasting > Nanoseconds(0))
-        player_.later(now() + fault.lasting, DueFault{.kind = *end});
+    const auto kind = fault.kind == FaultKind::HangUntilReset ? FaultKind::Hang : fault.kind;
+    const auto end = endOf(kind);
+    if (!end) return;
+    Nanoseconds& until = endOfCondition(*end);
+    if (fault.lasting <= Nanoseconds(0)) {
+        // Another rig that is there for good is no state that ends.
+        until = kind == FaultKind::PlugAs ? Nanoseconds(0) : Nanoseconds::max();
+        return;
+    }
+    until = std::max(until, now() + fault.lasting);
+    player_.later(now() + fault.lasting, DueFault{.kind = *end, .isEnd = true});
+}
+
+/// Nothing is to be done at this end.
+bool FaultyUsb::isNoEnd(const DueFault& end) const {
+    if (!end.isEnd) return false;
+    const auto kind = end.kind == FaultKind::PlugRebooted ? FaultKind::Plug : end.kind;
+    const auto until = endsAt_.find(kind);
+    const bool over = until == endsAt_.end() || until->second == Nanoseconds(0);
+    return over || now() < until->second;
 }
 
 void FaultyUsb::apply(const DueFault& fault) {
+    if (isNoEnd(fault)) return;
     endLater(fault);
     if (spoilsChunks(fault.kind)) return chunks_.put(fault);
     if (flawOf(fault.kind)) return flaws_.push_back(fault.kind);
@@ -116,23 +143,32 @@ void FaultyUsb::apply(const DueFault& fault) {
 /// False: the fault is another's business.
 bool FaultyUsb::applyToRig(const DueFault& fault) {
     switch (fault.kind) {
-        case FaultKind::Unplug:
-        case FaultKind::LosePower: unplug(); return true;
+        case FaultKind::Unplug: unplug(); return true;
+        case FaultKind::LosePower:
+            unplug();
+            powerLost_ = true;
+            return true;
         case FaultKind::UnplugQuietly: unplug(true); return true;
         case FaultKind::Plug: plug(); return true;
         case FaultKind::PlugRebooted:
-            device().powerCycle();
-            plug();
+            powerLost_ = true;
+            plugIn({});
             return true;
         case FaultKind::PlugAs: plugIn(fault.name); return true;
         case FaultKind::Hang:
         case FaultKind::HangUntilReset:
             hung_ = true;
-            hungUntilReset_ = fault.kind == FaultKind::HangUntilReset;
+            hungUntilReset_ = hungUntilReset_ || fault.kind == FaultKind::HangUntilReset;
             return true;
         case FaultKind::LimitTransfers: mostTransfers_ = fault.count; return true;
-        case FaultKind::EndHang: hung_ = false; return true;
-        case FaultKind::EndLimit: mostTransfers_ = kPlenty; return true;
+        case FaultKind::EndHang:
+            endsAt_.erase(fault.kind);
+            hung_ = hungUntilReset_ = false;
+            return true;
+        case FaultKind::EndLimit:
+            endsAt_.erase(fault.kind);
+            mostTransfers_ = kPlenty;
+            return true;
         case FaultKind::UnknownChunk:
             if (!device().capturing()) {  // of no capture it would be stale before it is unknown
                 ++unknownChunksDue_;
@@ -144,10 +180,14 @@ bool FaultyUsb::applyToRig(const DueFault& fault) {
         case FaultKind::PileUpReports: device().pileUpReports(fault.count); return true;
         case FaultKind::OpenInterlock: device().setInterlock(0); return true;
         case FaultKind::CloseInterlock:
+            endsAt_.erase(fault.kind);
             device().setInterlock(driver::interlock::kMayLight);
             return true;
         case FaultKind::Overheat: device().overheat(true); return true;
-        case FaultKind::CoolDown: device().overheat(false); return true;
+        case FaultKind::CoolDown:
+            endsAt_.erase(fault.kind);
+            device().overheat(false);
+            return true;
         case FaultKind::JumpClock:
             device().jumpClock(static_cast<std::uint64_t>(fault.time.count() / 1000));
             return true;
@@ -197,11 +237,13 @@ void FaultyUsb::unplug(bool quietly) {
     quietly_ = quietly;
     errorDue_ = !quietly;
     hung_ = hungUntilReset_ = false;
+    endsAt_.erase(FaultKind::EndHang);
     ++pulls_;
     pulledAt_ = now();
     backSince_.reset();
     chunks_.clear();
-    if (!stranger_) usb_.reset();
+    reports_.clear();
+    if (!stranger_) usb_.reset(UsbDevice::Loss::Power);
     stranger_.reset();
 }
 
@@ -210,6 +252,8 @@ void FaultyUsb::plugIn(const std::string& otherSerial) {
     plugged_ = true;
     reports_.plugged();
     if (otherSerial.empty()) {
+        endsAt_.erase(FaultKind::Plug);
+        if (std::exchange(powerLost_, false)) device().powerCycle();
         backSince_ = now();
         return;
     }
@@ -223,8 +267,13 @@ void FaultyUsb::plugIn(const std::string& otherSerial) {
 void FaultyUsb::resetPort() {
     if (!plugged_) return;
     ++portResets_;
-    if (hungUntilReset_) hung_ = hungUntilReset_ = false;
+    if (hungUntilReset_) {
+        hung_ = hungUntilReset_ = false;
+        endsAt_.erase(FaultKind::EndHang);
+    }
     chunks_.clear();
+    reports_.clear();
+    reports_.plugged();
     usb().reset();
 }
 
@@ -232,20 +281,21 @@ void FaultyUsb::resetPort() {
 
 UsbReply FaultyUsb::control(const UsbSetup& setup, std::span<const std::uint8_t> out) {
     constexpr std::uint8_t kSetReport = 9, kOutput = 2, kToInterface = 0x21;
-    constexpr std::uint8_t kSetInterface = 11, kOfInterface = 0x01;
     constexpr std::uint8_t kClearFeature = 1, kOfEndpoint = 0x02;
+    constexpr std::uint8_t kGetStatus = 0, kStatusOfEndpoint = 0x82;
     constexpr std::uint8_t kFromDevice = 0x80, kGetDescriptor = 6, kDeviceType = 1, kConfigType = 2;
     if (!plugged_) return without(UsbAnswer::Gone);
     if (hung_) return without(UsbAnswer::Nak);
     if (setup.requestType == kToInterface && setup.request == kSetReport &&
         setup.value >> 8 == kOutput && out.size() == driver::kReportBytes)
         return interruptOut(out);
-    const bool flush = setup.requestType == kOfInterface && setup.request == kSetInterface;
-    if (flush && setup.index == UsbDevice::kStreamInterface) chunks_.clear();
     if (setup.requestType == kOfEndpoint && setup.request == kClearFeature &&
         setup.index == usb::kInterruptIn)
         reports_.haltCleared(now());
     UsbReply reply = usb().control(setup, out);
+    if (setup.requestType == kStatusOfEndpoint && setup.request == kGetStatus &&
+        setup.index == usb::kInterruptIn && !reply.data.empty())
+        reply.data.front() = reports_.stalled() ? 1 : 0;
     if (backSince_ && device().claimed()) {
         reclaimed_ = std::max(reclaimed_, now() - *backSince_);
         backSince_.reset();
@@ -281,7 +331,12 @@ UsbReply FaultyUsb::interruptOut(std::span<const std::uint8_t> report) {
         return {};
     }
     UsbReply reply = usb_.interruptOut(report);
-    if (op == driver::Op::Flush) chunks_.clear();
+    if (device().takeReboot()) {
+        constexpr auto kAcknowledged = std::chrono::milliseconds(50);
+        constexpr auto kBoots = std::chrono::milliseconds(500);
+        player_.later(now() + kAcknowledged,
+                      DueFault{.kind = FaultKind::LosePower, .lasting = kBoots});
+    }
     putOff(player_.afterCommand(op));
     return reply;
 }

@@ -4,6 +4,7 @@
 // was never understood. Without a script nothing is wrong. Not for several threads at once.
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -22,7 +23,7 @@ public:
     FaultyUsb(const FaultyUsb&) = delete;
     FaultyUsb& operator=(const FaultyUsb&) = delete;
 
-    /// The script's time begins now. What an earlier one has begun goes on.
+    /// The script's time begins now. What an earlier one has begun goes on, and ends when it would.
     void play(FaultScript script);
     /// Now, whatever the script says.
     void cause(const DueFault& fault);
@@ -46,7 +47,10 @@ public:
 
     // The cable.
     void unplug(bool quietly = false);
-    void plug() { plugIn({}); }
+    /// One that is plugged in stays as it is.
+    void plug() {
+        if (!plugged_ || stranger_) plugIn({});
+    }
     [[nodiscard]] bool plugged() const { return plugged_; }
     /// The last time it was pulled, no transfer in flight ended in an error.
     [[nodiscard]] bool quietlyPulled() const { return quietly_; }
@@ -81,6 +85,8 @@ private:
     void applyAll(const std::vector<DueFault>& faults);
     void putOff(const std::vector<DueFault>& faults);
     void endLater(const DueFault& fault);
+    [[nodiscard]] bool isNoEnd(const DueFault& end) const;
+    [[nodiscard]] Nanoseconds& endOfCondition(FaultKind end);
     void plugIn(const std::string& otherSerial);
     [[nodiscard]] std::optional<ChunkBytes> nextChunk();
     [[nodiscard]] std::optional<ChunkBytes> fetchChunk();
@@ -95,7 +101,9 @@ private:
     UsbDevice usb_;
     std::unique_ptr<UsbDevice> stranger_;
 
-    bool plugged_ = true, quietly_ = false, errorDue_ = false;
+    /// When what lasts for a while is over, by the fault that ends it.
+    std::map<FaultKind, Nanoseconds> endsAt_;
+    bool plugged_ = true, quietly_ = false, errorDue_ = false, powerLost_ = false;
     bool hung_ = false, hungUntilReset_ = false;
     int pulls_ = 0;
     Nanoseconds pulledAt_{0};

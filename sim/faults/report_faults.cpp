@@ -44,7 +44,8 @@ bool ReportFaults::put(const DueFault& fault, Nanoseconds now) {
             return true;
         case FaultKind::SilenceReports:
             silentUntil_ =
-                fault.lasting > Nanoseconds(0) ? now + fault.lasting : Nanoseconds::max();
+                std::max(silentUntil_,
+                         fault.lasting > Nanoseconds(0) ? now + fault.lasting : Nanoseconds::max());
             unheardSince_ = now;
             tally_.add(fault.kind);
             return true;
@@ -62,6 +63,13 @@ void ReportFaults::plugged() {
     if (silentUntil_ == Nanoseconds::max()) silentUntil_ = Nanoseconds(0);
     stalled_ = false;
     unheardSince_.reset();
+}
+
+void ReportFaults::clear() {
+    held_.clear();
+    extra_.clear();
+    delays_.clear();
+    acksToLose_ = toDrop_ = toSpoil_ = 0;
 }
 
 void ReportFaults::haltCleared(Nanoseconds now) {

@@ -28,6 +28,8 @@ public:
     void opened(Nanoseconds now);
     /// A rig that is plugged in begins with sound endpoints.
     void plugged();
+    /// The rig has lost its link: what was on its way, or waited for a report, is lost.
+    void clear();
     [[nodiscard]] bool stalled() const { return stalled_; }
     /// Somebody cleared the halt of the endpoint.
     void haltCleared(Nanoseconds now);

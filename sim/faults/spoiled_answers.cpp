@@ -207,13 +207,14 @@ void SpoiledAnswers::spoil(const UsbSetup& setup, UsbReply& reply) const {
             std::find(malformed_.begin(), malformed_.end(), text.name) != malformed_.end();
         if (wanted && low == kSerialString) reply.data = {text.bytes.begin(), text.bytes.end()};
     }
-    if (low == kProtocolString)
+    if (low == kProtocolString && (major_ != 1 || minor_ != 0))
         setText(reply, "GRP/" + std::to_string(major_) + "." + std::to_string(minor_));
     for (const Text& text : kTexts) {
         const bool wanted =
             std::find(malformed_.begin(), malformed_.end(), text.name) != malformed_.end();
         if (wanted && text.index == low) setText(reply, text.text);
     }
+    if (reply.data.size() > setup.length) reply.data.resize(setup.length);
 }
 
 }  // namespace gonio::sim

@@ -61,6 +61,7 @@ HidrawNode::~HidrawNode() {
 
 void HidrawNode::connect() {
     pipe_ = makePipe(testbed(), path());
+    keepsOpen(1);
     live().listen([this](const std::vector<std::uint8_t>& report) {
         if (report.empty()) {
             halted_ = true;
@@ -86,22 +87,11 @@ void HidrawNode::pull(bool quietly) {
 }
 
 void HidrawNode::firstOpened() {
-    const std::scoped_lock whole(writing_);
-    discardUnread(pipe_);
-}
-
-void HidrawNode::opened() {
+    {
+        const std::scoped_lock whole(writing_);
+        discardUnread(pipe_);
+    }
     live().with([](sim::FaultyUsb& usb) { usb.reportsOpened(); });
-}
-
-bool HidrawNode::hung() const {
-    return live().faults.hung || live().with([](sim::FaultyUsb& usb) { return usb.hung(); });
-}
-
-void HidrawNode::waitWhileHung() const {
-    const auto end = std::chrono::steady_clock::now() + kKernelPatience;
-    while (hung() && !gone() && std::chrono::steady_clock::now() < end)
-        std::this_thread::sleep_for(5ms);
 }
 
 gboolean HidrawNode::onIoctl(UMockdevIoctlBase*, UMockdevIoctlClient* client, HidrawNode* self) {
@@ -114,8 +104,7 @@ gboolean HidrawNode::onIoctl(UMockdevIoctlBase*, UMockdevIoctlClient* client, Hi
 gboolean HidrawNode::onWrite(UMockdevIoctlBase*, UMockdevIoctlClient* client, HidrawNode* self) {
     const UMockdevIoctlData* arg = umockdev_ioctl_client_get_arg(client);
     const std::span report(arg->data, static_cast<std::size_t>(arg->data_len));
-    self->waitWhileHung();
-    int error = self->gone() ? ENODEV : self->hung() ? ETIMEDOUT : 0;
+    int error = self->waitWhileHung(kKernelPatience);
     if (error == 0) {
         const auto reply = self->live().with([&](sim::FaultyUsb& usb) {
             return self->isAnothers(usb) ? kRefused : usb.interruptOut(report);
@@ -153,9 +142,7 @@ int HidrawNode::answer(unsigned long request, UMockdevIoctlData* arg) {
 }
 
 int HidrawNode::feature(bool get, std::span<std::uint8_t> report) {
-    waitWhileHung();
-    if (gone()) return -ENODEV;
-    if (hung()) return -ETIMEDOUT;
+    if (const int error = waitWhileHung(kKernelPatience); error != 0) return -error;
     constexpr std::uint16_t kFeature = 3 << 8;
     const sim::UsbSetup setup{.requestType = static_cast<std::uint8_t>(get ? 0xA1 : 0x21),
                               .request = static_cast<std::uint8_t>(get ? 1 : 9),

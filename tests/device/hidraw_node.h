@@ -25,14 +25,11 @@ public:
 
 private:
     void firstOpened() override;
-    void opened() override;
     static gboolean onIoctl(UMockdevIoctlBase*, UMockdevIoctlClient* client, HidrawNode* self);
     static gboolean onWrite(UMockdevIoctlBase*, UMockdevIoctlClient* client, HidrawNode* self);
     /// Bytes moved, or minus the errno.
     int answer(unsigned long request, UMockdevIoctlData* arg);
     int feature(bool get, std::span<std::uint8_t> report);
-    [[nodiscard]] bool hung() const;
-    void waitWhileHung() const;
 
     int pipe_ = -1;
     std::atomic<bool> halted_{false};

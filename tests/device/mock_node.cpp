@@ -1,6 +1,8 @@
 #include "tests/device/mock_node.h"
 
+#include <cerrno>
 #include <chrono>
+#include <filesystem>
 #include <thread>
 #include <utility>
 
@@ -43,6 +45,17 @@ void MockNode::detach() {
         umockdev_testbed_detach_ioctl(testbed_, path_.c_str(), nullptr);
 }
 
+bool MockNode::hung() const {
+    return live_.faults.hung || live_.with([](sim::FaultyUsb& usb) { return usb.hung(); });
+}
+
+int MockNode::waitWhileHung(std::chrono::milliseconds patience) const {
+    const auto end = std::chrono::steady_clock::now() + patience;
+    while (hung() && !gone() && std::chrono::steady_clock::now() < end)
+        std::this_thread::sleep_for(5ms);
+    return gone() ? ENODEV : hung() ? ETIMEDOUT : 0;
+}
+
 /// Nobody is told when a client goes: one has to look.
 bool MockNode::isOpen() {
     const std::scoped_lock lock(mutex_);
@@ -54,9 +67,24 @@ bool MockNode::isOpen() {
     return !clients_.empty();
 }
 
+/// One who closed it a moment ago may still look connected. The files of all processes do not lie.
+bool MockNode::isOpenedAlone() const {
+    namespace fs = std::filesystem;
+    std::error_code gone;
+    gchar* root = umockdev_testbed_get_root_dir(testbed_);
+    const fs::path node = fs::canonical(std::string(root) + path_, gone);
+    g_free(root);
+    int files = 0;
+    for (const auto& process : fs::directory_iterator("/proc", gone)) {
+        std::error_code unreadable;  // it has ended, or is no process
+        for (const auto& file : fs::directory_iterator(process.path() / "fd", unreadable))
+            files += fs::read_symlink(file.path(), unreadable) == node ? 1 : 0;
+    }
+    return files <= 1 + ownFiles_;
+}
+
 void MockNode::onOpen(UMockdevIoctlBase*, UMockdevIoctlClient* client, MockNode* self) {
-    if (!self->isOpen()) self->firstOpened();
-    self->opened();
+    if (!self->isOpen() || self->isOpenedAlone()) self->firstOpened();
     const std::scoped_lock lock(self->mutex_);
     self->clients_.push_back(UMOCKDEV_IOCTL_CLIENT(g_object_ref(client)));
 }

@@ -34,19 +34,24 @@ protected:
     [[nodiscard]] bool isOpen();
     [[nodiscard]] bool gone() const { return gone_; }
     [[nodiscard]] sim::LiveRig& live() const { return live_; }
+    /// There, and answering nothing.
+    [[nodiscard]] bool hung() const;
+    /// As a kernel waits for an answer. 0: there is one; or the errno.
+    [[nodiscard]] int waitWhileHung(std::chrono::milliseconds patience) const;
     /// Another rig is at the plug by now, or this one again: its node is another.
     [[nodiscard]] bool isAnothers(const sim::FaultyUsb& usb) const {
         return usb.plugged() && usb.pulls() != pulls_;
     }
-    /// Somebody opens it whom nobody came before.
+    /// Somebody opens it that nobody else has open.
     virtual void firstOpened() {}
-    /// Somebody opens it: also one who closed it so lately that it still looks open.
-    virtual void opened() {}
+    /// The test bed itself has the node open so often.
+    void keepsOpen(int files) { ownFiles_ = files; }
     /// A derived class calls it first thing when it ends: no request comes after it.
     void retire();
 
 private:
     void detach();
+    [[nodiscard]] bool isOpenedAlone() const;
     static void onOpen(UMockdevIoctlBase*, UMockdevIoctlClient* client, MockNode* self);
 
     sim::LiveRig& live_;
@@ -57,6 +62,7 @@ private:
     std::mutex mutex_;
     std::vector<UMockdevIoctlClient*> clients_;  ///< of the files that were open last time
     std::atomic<bool> gone_{false};
+    int ownFiles_ = 0;
     std::chrono::steady_clock::time_point pulledAt_{};
     bool detached_ = false;
 };

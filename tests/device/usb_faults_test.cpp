@@ -4,8 +4,10 @@
 
 #include <thread>
 
+#include "driver/usb_ledger.h"
 #include "tests/device/usb_rig_fixture.h"
 #include "tests/device/without_rights.h"
+#include "tests/support/wait_until.h"
 
 namespace gonio::device_test {
 namespace {
@@ -257,6 +259,32 @@ TEST_F(UsbRigTest, OfTwoRigsTheSerialNumberSaysWhich) {
     const auto third = driver::openUsb({.serial = "SIM-0044"});
     ASSERT_FALSE(third);
     EXPECT_EQ(third.error().kind, ErrorKind::NoRig);
+}
+
+TEST_F(UsbFaults, APortThatCouldNotBeResetInTimeIsResetAfterwards) {
+    mock.live().with([](sim::FaultyUsb& usb) { usb.cause(sim::FaultKind::HangUntilReset); });
+    EXPECT_FALSE(transport->resetStream());  // the kernel waits on
+    (void)transport->resetPort();
+    rig.reset();
+    transport.reset();
+    EXPECT_TRUE(test::waitUntil([&] {
+        const bool hung = mock.live().with([](sim::FaultyUsb& usb) { return usb.hung(); });
+        return !hung && driver::usbLedger().streams == 0;
+    }));
+    transport = opened();
+    ASSERT_TRUE(transport);
+    EXPECT_TRUE(Rig::open(*transport, kSession));
+}
+
+TEST_F(UsbRigTest, ARigThatIsSilentWhenItIsOpenedGetsItsPortReset) {
+    mock.live().with([](sim::FaultyUsb& usb) { usb.cause(sim::FaultKind::HangUntilReset); });
+    const auto silent = driver::openUsb();
+    ASSERT_FALSE(silent);
+    EXPECT_EQ(silent.error().kind, ErrorKind::Device);
+    EXPECT_NE(silent.error().message.find("its port was reset"), std::string::npos)
+        << silent.error().message;
+    const auto awake = driver::openUsb();
+    EXPECT_TRUE(awake) << awake.error().message;
 }
 
 }  // namespace

@@ -14,6 +14,13 @@ namespace {
 
 using namespace std::chrono_literals;
 
+constexpr std::size_t kSetup = 8;  // bytes before the data of a control transfer
+// What usbfs does by itself waits longer than the driver for a rig that answers nothing. (A kernel
+// waits for five seconds.)
+constexpr auto kKernelPatience = 3s;
+// Of a port: a kernel asks such a rig for its descriptors again and again.
+constexpr auto kResetPatience = 1200ms;
+
 usbdevfs_urb& urbOf(UMockdevIoctlData* data) {
     return *reinterpret_cast<usbdevfs_urb*>(data->data);
 }
@@ -63,8 +70,7 @@ UsbfsNode::UsbfsNode(sim::LiveRig& live, UMockdevTestbed* testbed, std::string p
 UsbfsNode::~UsbfsNode() {
     retire();
     const std::scoped_lock lock(mutex_);
-    forget(waiting_);
-    forget(done_);
+    for (std::deque<Urb>* urbs : {&controls_, &waiting_, &done_}) forget(*urbs);
     for (auto& [interface, owner] : claims_) g_object_unref(owner);
 }
 
@@ -80,17 +86,19 @@ void UsbfsNode::pull(bool quietly) {
     MockNode::pull(quietly);
     const std::scoped_lock lock(mutex_);
     if (quietly) return;  // then reaping says that the device is gone
-    for (Urb& urb : waiting_) {
-        urb.status = -EPROTO;  // as most unplugs on a real kernel show
-        done_.push_back(urb);
+    for (std::deque<Urb>* urbs : {&controls_, &waiting_}) {
+        for (Urb& urb : *urbs) {
+            urb.status = -EPROTO;  // as most unplugs on a real kernel show
+            done_.push_back(urb);
+        }
+        urbs->clear();
     }
-    waiting_.clear();
 }
 
 /// The transfers and claims of a file that was closed are gone with it, as the memory of a killed
 /// process is.
 void UsbfsNode::forgetTheDead() {
-    for (std::deque<Urb>* urbs : {&waiting_, &done_}) {
+    for (std::deque<Urb>* urbs : {&controls_, &waiting_, &done_}) {
         std::erase_if(*urbs, [](const Urb& urb) {
             if (umockdev_ioctl_client_get_connected(urb.client)) return false;
             umockdev_ioctl_data_unref(urb.data);
@@ -117,7 +125,7 @@ int UsbfsNode::answer(UMockdevIoctlClient* client) {
     std::unique_lock lock(mutex_);
     forgetTheDead();
     if (request == USBDEVFS_REAPURBNDELAY) {
-        if (done_.empty() && !advanceBulk() && !gone()) {
+        if (done_.empty() && !advanceControl() && !advanceBulk() && !gone()) {
             lock.unlock();
             std::this_thread::sleep_for(500us);
             lock.lock();
@@ -140,13 +148,16 @@ int UsbfsNode::answer(UMockdevIoctlClient* client) {
         case USBDEVFS_RELEASEINTERFACE: return release(client, *resolved<int>(arg));
         case USBDEVFS_SUBMITURB: return submit(client, arg);
         case USBDEVFS_DISCARDURB: return discard(arg);
-        case USBDEVFS_SETINTERFACE: return setInterface(arg);
-        case USBDEVFS_RESET: live().with([](sim::FaultyUsb& usb) { usb.resetPort(); }); return 0;
+        case USBDEVFS_SETINTERFACE: return setInterface(arg, lock);
+        case USBDEVFS_RESET: {
+            live().with([](sim::FaultyUsb& usb) { usb.resetPort(); });
+            lock.unlock();
+            return waitWhileHung(kResetPatience);
+        }
         case USBDEVFS_CLEAR_HALT: {
-            const sim::UsbSetup clear{
+            constexpr sim::UsbSetup kClear{
                 .requestType = 2, .request = 1, .index = sim::UsbDevice::kBulkIn};
-            live().with([&](sim::FaultyUsb& usb) { return usb.control(clear); });
-            return 0;
+            return this->request(kClear, lock);
         }
         default: return ENOTTY;
     }
@@ -168,37 +179,46 @@ int UsbfsNode::release(UMockdevIoctlClient* client, int interface) {
     return 0;
 }
 
-int UsbfsNode::setInterface(UMockdevIoctlData* arg) {
+/// One that the caller waits for. Other requests, and the cable, need not.
+int UsbfsNode::request(const sim::UsbSetup& setup, std::unique_lock<std::mutex>& lock) {
+    lock.unlock();
+    if (const int error = waitWhileHung(kKernelPatience); error != 0) return error;
+    const auto reply = live().with([&](sim::FaultyUsb& usb) {
+        return isAnothers(usb) ? sim::UsbReply{.answer = sim::UsbAnswer::Gone, .data = {}}
+                               : usb.control(setup);
+    });
+    switch (reply.answer) {
+        case sim::UsbAnswer::Done: return 0;
+        case sim::UsbAnswer::Nak: return ETIMEDOUT;  // it hangs since this moment
+        case sim::UsbAnswer::Gone: return ENODEV;
+        default: return EPIPE;
+    }
+}
+
+int UsbfsNode::setInterface(UMockdevIoctlData* arg, std::unique_lock<std::mutex>& lock) {
     const auto& wanted = *resolved<usbdevfs_setinterface>(arg);
     const sim::UsbSetup set{.requestType = 1,
                             .request = 11,
                             .value = static_cast<std::uint16_t>(wanted.altsetting),
                             .index = static_cast<std::uint16_t>(wanted.interface)};
-    const auto reply = live().with([&](sim::FaultyUsb& usb) { return usb.control(set); });
-    return reply.answer == sim::UsbAnswer::Done ? 0 : EPIPE;
+    return request(set, lock);
 }
 
 int UsbfsNode::submit(UMockdevIoctlClient* client, UMockdevIoctlData* arg) {
     UMockdevIoctlData* data = umockdev_ioctl_data_resolve(arg, 0, sizeof(usbdevfs_urb), nullptr);
     if (!data) return EFAULT;
+    const bool control = urbOf(data).type == USBDEVFS_URB_TYPE_CONTROL;
+    const bool full = !control && static_cast<int>(waiting_.size()) >= mostTransfers();
+    if (full || (control && urbOf(data).buffer_length < static_cast<int>(kSetup))) {
+        umockdev_ioctl_data_unref(data);
+        return full ? ENOMEM : EINVAL;
+    }
     Urb urb{.client = UMOCKDEV_IOCTL_CLIENT(g_object_ref(client)),
             .data = data,
             .reply = {},
             .status = 0};
-    if (urbOf(data).type == USBDEVFS_URB_TYPE_CONTROL) {
-        if (live().faults.hung || !runControl(urb)) {
-            waiting_.push_back(urb);
-        } else {
-            done_.push_back(urb);
-        }
-        return 0;
-    }
-    if (static_cast<int>(waiting_.size()) >= mostTransfers()) {
-        umockdev_ioctl_data_unref(data);
-        g_object_unref(client);
-        return ENOMEM;
-    }
-    waiting_.push_back(urb);
+    (control ? controls_ : waiting_).push_back(urb);
+    if (control) (void)advanceControl();
     return 0;
 }
 
@@ -209,7 +229,6 @@ int UsbfsNode::mostTransfers() {
 
 /// False: the rig does not answer it.
 bool UsbfsNode::runControl(Urb& urb) {
-    constexpr std::size_t kSetup = 8;
     const auto length = static_cast<std::size_t>(urbOf(urb.data).buffer_length);
     const auto bytes = buffer(urb.data, length);
     const auto word = [&](std::size_t i) {
@@ -225,21 +244,33 @@ bool UsbfsNode::runControl(Urb& urb) {
     });
     if (urb.reply.answer == sim::UsbAnswer::Nak) return false;
     if (urb.reply.answer != sim::UsbAnswer::Done) urb.status = statusOf(urb.reply.answer);
-    std::copy(urb.reply.data.begin(), urb.reply.data.end(), bytes.begin() + kSetup);
-    urbOf(urb.data).actual_length = static_cast<int>(urb.reply.data.size());
+    const std::size_t moved = std::min(urb.reply.data.size(), bytes.size() - kSetup);
+    std::copy_n(urb.reply.data.begin(), moved, bytes.begin() + kSetup);
+    urbOf(urb.data).actual_length = static_cast<int>(moved);
+    return true;
+}
+
+/// Ends the oldest control transfer if the rig answers it.
+bool UsbfsNode::advanceControl() {
+    if (controls_.empty() || live().faults.hung || !runControl(controls_.front())) return false;
+    done_.push_back(std::move(controls_.front()));
+    controls_.pop_front();
     return true;
 }
 
 int UsbfsNode::discard(UMockdevIoctlData* arg) {
     const auto address = *reinterpret_cast<gulong*>(arg->data);
-    const auto found = std::find_if(waiting_.begin(), waiting_.end(), [&](const Urb& urb) {
-        return urb.data->client_addr == address;
-    });
-    if (found == waiting_.end()) return EINVAL;
-    found->status = -ENOENT;
-    done_.push_back(*found);
-    waiting_.erase(found);
-    return 0;
+    for (std::deque<Urb>* urbs : {&controls_, &waiting_}) {
+        const auto found = std::find_if(urbs->begin(), urbs->end(), [&](const Urb& urb) {
+            return urb.data->client_addr == address;
+        });
+        if (found == urbs->end()) continue;
+        found->status = -ENOENT;
+        done_.push_back(*found);
+        urbs->erase(found);
+        return 0;
+    }
+    return EINVAL;
 }
 
 void UsbfsNode::sendInstead(std::deque<sim::UsbReply> transfers) {
@@ -268,7 +299,7 @@ bool UsbfsNode::advanceBulk() {
     if (urb.reply.answer == sim::UsbAnswer::Nak) return false;
     if (urb.reply.answer != sim::UsbAnswer::Done) {
         urb.status = statusOf(urb.reply.answer);
-    } else if (takeOne(live().faults.overflow) || !wholePackets) {
+    } else if (takeOne(live().faults.overflow) || !wholePackets || urb.reply.data.size() > length) {
         // A buffer that ends inside a packet has no room for a full one.
         urb.status = -EOVERFLOW;
     } else if (takeOne(live().faults.protocolErrors)) {

@@ -38,18 +38,21 @@ private:
     int submit(UMockdevIoctlClient* client, UMockdevIoctlData* arg);
     int discard(UMockdevIoctlData* arg);
     int reap(UMockdevIoctlClient* client, UMockdevIoctlData* arg);
-    int setInterface(UMockdevIoctlData* arg);
+    int setInterface(UMockdevIoctlData* arg, std::unique_lock<std::mutex>& lock);
+    int request(const sim::UsbSetup& setup, std::unique_lock<std::mutex>& lock);
     int claim(UMockdevIoctlClient* client, int interface);
     int release(UMockdevIoctlClient* client, int interface);
     [[nodiscard]] int mostTransfers();
-    bool runControl(Urb& urb);
+    [[nodiscard]] bool runControl(Urb& urb);
+    [[nodiscard]] bool advanceControl();
     [[nodiscard]] bool advanceBulk();
     [[nodiscard]] sim::UsbReply nextForeign();
     static void forget(std::deque<Urb>& urbs);
     void forgetTheDead();
 
     std::mutex mutex_;
-    std::deque<Urb> waiting_, done_;
+    std::deque<Urb> controls_, waiting_;  ///< of endpoint 0, of the bulk endpoint
+    std::deque<Urb> done_;
     std::map<int, UMockdevIoctlClient*> claims_;  ///< who has an interface
     std::optional<std::deque<sim::UsbReply>> foreign_;
 };

@@ -55,7 +55,7 @@ mutant(F14 inproc link.cpp [[event.sequence != lastEvent_ + 1]] [[false]])
 mutant(F15 usb usb_stream_transport.cpp [[code == LIBUSB_ERROR_NO_MEM]] [[false]])
 mutant(F06 usb usb_stream_transport.cpp
     [[libusb_clear_halt(rig_.handle.get(), rig_.interfaces.bulkIn)]] [[0]])
-mutant(F06-error usb usb_stream_transport.cpp [[stalled ? 0 : askWhetherThere()]]
+mutant(F06-error usb usb_stream_transport.cpp [[askWhetherThere(rig_)]]
     [[stalled ? 0 : LIBUSB_ERROR_IO]])
 mutant(F15-none usb usb_stream_transport.cpp
     [[steadyNow() - *starvedSince_ >= kMemoryLimit]] [[true]])

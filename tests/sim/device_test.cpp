@@ -233,5 +233,48 @@ TEST(Device, TellsTheBitsOfItsPixelsAndWhatTheyMean) {
     }
 }
 
+TEST(Device, ACommandThatIsRefusedAsBusyIsDoneWhenItComesAgain) {
+    Device device({.errors = {}});
+    claim(device);
+    const SetFormat small{.format = PixelFormat::Mono16, .width = 16, .height = 8, .binning = 1};
+    answerTo(device, {.sequence = 1, .op = Op::SetFormat, .arguments = encode(small)});
+    answerTo(device,
+             {.sequence = 2, .op = Op::Arm, .arguments = encode(Arm{.captureId = 1, .frames = 1})});
+    device.advanceTo(device.now() + std::chrono::seconds(1));
+    Command again{
+        .sequence = 3, .op = Op::Resend, .arguments = encode(Resend{.captureId = 1, .frame = 0})};
+    Ack ack = answerTo(device, again);
+    for (; ack.status == status::kOk && again.sequence < 100; ack = answerTo(device, again))
+        ++again.sequence;
+    EXPECT_EQ(ack.status, status::kBusy);
+    EXPECT_GT(ack.retryMs, 0);
+    while (device.takeBulk()) {
+    }
+    EXPECT_EQ(answerTo(device, again).status, status::kOk);
+}
+
+TEST(Device, OnChangeStatusComesOnceIn10MsAtMost) {
+    constexpr auto kPause = std::chrono::milliseconds(10);
+    Device device({.errors = {}});
+    claim(device);
+    device.advanceTo(device.now() + kPause);
+    inputsOf(device);
+    std::vector<Nanoseconds> told;
+    const Nanoseconds begin = device.now();
+    for (std::uint16_t sequence = 1; sequence <= 5; ++sequence) {
+        device.output(encode(Command{.sessionLow = static_cast<std::uint32_t>(kSession),
+                                     .sequence = sequence,
+                                     .op = Op::Abort}));
+        device.advanceTo(device.now() + std::chrono::microseconds(100));
+        for (const Report& report : inputsOf(device))
+            if (decodeStatus(report)) told.push_back(device.now());
+    }
+    EXPECT_LE(told.size(), 1U);
+    device.advanceTo(begin + 3 * kPause);
+    std::size_t later = 0;
+    for (const Report& report : inputsOf(device)) later += decodeStatus(report) ? 1U : 0U;
+    EXPECT_EQ(later, 1U) << "the last change is told all the same";
+}
+
 }  // namespace
 }  // namespace gonio::sim

@@ -219,5 +219,129 @@ TEST_F(FaultyUsbTest, AFrameCanBeWellFormedAndWrong) {
     EXPECT_NE(chunks()[1][driver::kChunkHeaderBytes], 0);
 }
 
+TEST_F(FaultyUsbTest, OfFaultsThatOverlapTheLastEndCounts) {
+    play("at 4s unplug for 6s\nat 5s unplug for 1s\n");
+    usb.advanceTo(9900ms);
+    EXPECT_FALSE(usb.plugged());
+    usb.advanceTo(10100ms);
+    EXPECT_TRUE(usb.plugged());
+    usb.advanceTo(20s);
+    EXPECT_TRUE(usb.plugged());
+    EXPECT_EQ(usb.pulls(), 1);
+}
+
+TEST_F(FaultyUsbTest, TheEndOfAHangThatIsOverEndsNoLaterOne) {
+    play("at 1s hang for 2s\nat 1.5s end hang\nat 2s hang until reset\n");
+    usb.advanceTo(1900ms);
+    EXPECT_FALSE(usb.hung());
+    usb.advanceTo(4s);
+    EXPECT_TRUE(usb.hung());
+    usb.resetPort();
+    EXPECT_FALSE(usb.hung());
+}
+
+TEST_F(FaultyUsbTest, WhatAScriptHasBegunEndsUnderTheNextOne) {
+    play("at 0s unplug for 1s\n");
+    EXPECT_FALSE(usb.plugged());
+    play("at 9s hang\n");
+    usb.advanceTo(usb.now() + 1s);
+    EXPECT_TRUE(usb.plugged());
+}
+
+TEST_F(FaultyUsbTest, PluggingInWhatIsPluggedInDoesNothing) {
+    play("at 0s plug\n");
+    EXPECT_EQ(usb.pulls(), 0);
+}
+
+TEST_F(FaultyUsbTest, AnAckOfBeforeDoesNotComeFromTheNextBoot) {
+    play("on command 1 delay ack 150ms\n");
+    send(Op::Ping, {});
+    while (usb.interruptIn().answer == UsbAnswer::Done) {
+    }
+    play("at 0s lose power for 50ms\n");
+    usb.advanceTo(usb.now() + 1s);
+    ASSERT_TRUE(usb.plugged());
+    for (UsbReply reply = usb.interruptIn(); reply.answer == UsbAnswer::Done;
+         reply = usb.interruptIn())
+        EXPECT_NE(reply.data[0], static_cast<std::uint8_t>(driver::ReportId::Ack));
+}
+
+TEST_F(FaultyUsbTest, AStalledEndpointOfReportsSpeaksOnceItsHaltIsCleared) {
+    const auto halted = [&] {
+        const UsbReply status = usb.control(
+            {.requestType = 0x82, .request = 0, .index = usb::kInterruptIn, .length = 2});
+        return status.data.at(0);
+    };
+    EXPECT_EQ(halted(), 0);
+    play("at 0s stall reports\n");
+    usb.advanceTo(usb.now() + 200ms);
+    EXPECT_EQ(usb.interruptIn().answer, UsbAnswer::Stall);
+    EXPECT_EQ(halted(), 1);
+    usb.control({.requestType = 0x02, .request = 1, .index = usb::kInterruptIn});
+    EXPECT_EQ(halted(), 0);
+    usb.advanceTo(usb.now() + 200ms);
+    EXPECT_EQ(usb.interruptIn().answer, UsbAnswer::Done);
+}
+
+TEST_F(FaultyUsbTest, AFlushDropsTheChunkThatIsHalfSent) {
+    constexpr std::size_t kPacket = 512;
+    takeFrame();
+    EXPECT_LT(usb.bulkIn(kPacket).data.size(), kPacket) << "the LEADER";
+    EXPECT_EQ(usb.bulkIn(kPacket).data.size(), kPacket) << "a part of the first DATA chunk";
+    send(Op::Flush, {});
+    EXPECT_EQ(usb.bulkIn(kPacket).answer, UsbAnswer::Nak);
+}
+
+TEST_F(FaultyUsbTest, AFlushThatIsRefusedDropsNothing) {
+    play("on chunk 1 duplicate chunk\n");
+    takeFrame();
+    EXPECT_EQ(usb.bulkIn(kRoom).answer, UsbAnswer::Done);
+    usb.interruptOut(driver::encode(
+        driver::Command{.sessionLow = 8, .sequence = 1, .op = Op::Flush, .arguments = {}}));
+    EXPECT_EQ(chunks().size(), 4U) << "the LEADER again, and what follows it";
+}
+
+TEST_F(FaultyUsbTest, ARigThatIsToldToRebootLeavesTheBusAndComesBackAsAnotherBoot) {
+    const auto bootId = [&] {
+        constexpr auto kIdent = static_cast<std::uint8_t>(driver::ReportId::Ident);
+        return driver::decodeIdent(*usb.device().getFeature(kIdent)).value().bootId;
+    };
+    takeFrame();
+    const auto boot = bootId();
+    send(Op::Reboot, {});
+    EXPECT_TRUE(usb.plugged()) << "the ACK is still to be read";
+    usb.advanceTo(usb.now() + 100ms);
+    EXPECT_FALSE(usb.plugged());
+    usb.advanceTo(usb.now() + 3s);
+    EXPECT_TRUE(usb.plugged());
+    EXPECT_NE(bootId(), boot);
+}
+
+TEST_F(FaultyUsbTest, ALostLinkSaysWhetherTheCableWasPulled) {
+    std::vector<std::uint32_t> causes;
+    const auto read = [&] {
+        for (UsbReply reply = usb.interruptIn(); reply.answer == UsbAnswer::Done;
+             reply = usb.interruptIn()) {
+            driver::Report report{};
+            std::copy(reply.data.begin(), reply.data.end(), report.begin());
+            const auto event = driver::decodeEvent(report);
+            if (event && event->code == driver::event::kLinkLost) causes.push_back(event->arg0);
+        }
+    };
+    usb.resetPort();
+    read();
+    usb.unplug();
+    usb.plug();
+    read();
+    EXPECT_EQ(causes, (std::vector<std::uint32_t>{1, 3}));
+}
+
+TEST_F(FaultyUsbTest, AStringIsNoLongerThanItWasAskedFor) {
+    constexpr UsbSetup kProtocol{.requestType = 0x80, .request = 6, .value = 0x03F0, .length = 4};
+    EXPECT_EQ(usb.control(kProtocol).data.size(), 4U);
+    play("at 0s newer minor\n");
+    EXPECT_EQ(usb.control(kProtocol).data.size(), 4U);
+}
+
 }  // namespace
 }  // namespace gonio::sim

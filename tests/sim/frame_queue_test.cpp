@@ -70,5 +70,19 @@ TEST(FrameQueue, TheOldestFrameIsForgotten) {
     EXPECT_FALSE(queue.holds(2));
 }
 
+TEST(FrameQueue, NoMoreWaitsToBeSentAgainThanTheFrameRamHasRoomFor) {
+    FrameQueue queue;
+    queue.add(frameOf(1));
+    queue.flush();
+    const Resend whole{.captureId = 1, .frame = 0};
+    for (std::size_t i = 0; i < kFrameRam; ++i) EXPECT_EQ(queue.resend(whole).status, status::kOk);
+    EXPECT_EQ(queue.resend(whole).status, status::kBusy);
+    for (int i = 0; i < 3; ++i) (void)headerOf(queue);
+    EXPECT_EQ(queue.resend(whole).status, status::kOk);
+    EXPECT_EQ(queue.resend(whole).status, status::kBusy);
+    queue.flush();
+    EXPECT_EQ(queue.resend(whole).status, status::kOk);
+}
+
 }  // namespace
 }  // namespace gonio::sim

@@ -4,10 +4,16 @@
 
 #include <gtest/gtest.h>
 
+#include <netinet/tcp.h>
+
 #include <filesystem>
 #include <random>
+#include <stop_token>
+#include <thread>
 
 #include "driver/protocol/chunk.h"
+#include "sim/stream_socket.h"
+#include "sim/usbip_line.h"
 #include "tests/support/usbip_frame.h"
 #include "tests/support/wait_until.h"
 
@@ -235,6 +241,130 @@ TEST_F(UsbipServerTest, SaysWhyItCannotServeThere) {
     EXPECT_EQ(kindOf({.port = 70000}, "65535"), ErrorKind::Usage);
     EXPECT_EQ(kindOf({.host = "localhost"}, "--bind"), ErrorKind::Usage);
     EXPECT_EQ(kindOf({.host = "192.0.2.1"}, "--bind"), ErrorKind::Usage);
+}
+
+TEST_F(UsbipServerTest, ReportsTakenBackAndAskedForAgainAreOpenedAnew) {
+    constexpr int kMore = 20;  // than were told before
+    UsbipClient client(port());
+    ASSERT_EQ(client.import("1-1"), 0U);
+    first.with([](FaultyUsb& usb) { usb.cause(FaultKind::SilenceReports); });
+    std::vector<std::uint32_t> waiting;
+    for (int i = 0; i < kMore; ++i) waiting.push_back(client.submit(true, 1, 64));
+    for (const auto one : waiting) client.unlink(one);
+    for (int back = 0; back < kMore;) back += client.next(true).command == 4U ? 1 : 0;
+    client.submit(true, 1, 64);
+    EXPECT_EQ(client.next(true).data.size(), 64U);
+}
+
+TEST_F(UsbipServerTest, AStallOfTheReportsLastsUntilTheirHaltIsCleared) {
+    constexpr int kMore = 20;
+    UsbipClient client(port());
+    ASSERT_EQ(client.import("1-1"), 0U);
+    first.with([](FaultyUsb& usb) { usb.cause(FaultKind::StallReports); });
+    int status = 0;
+    for (int i = 0; i < kMore && status == 0; ++i) {
+        client.submit(true, 1, 64);
+        status = client.next(true).status;
+    }
+    EXPECT_EQ(status, kPipe);
+    client.submit(false, 0, 0, UsbipClient::setup(0x02, 1, 0, 0x81, 0));
+    EXPECT_EQ(client.next(false).status, 0);
+    for (int i = 0; i < kMore && status != 0; ++i) {  // a stall of before may still be told
+        client.submit(true, 1, 64);
+        status = client.next(true).status;
+    }
+    EXPECT_EQ(status, 0);
+}
+
+TEST_F(UsbipServerTest, ABusResetIsSeenByWhatLinuxAsksForAfterIt) {
+    const auto lapsed = [](LiveRig& rig) {
+        return rig.with([](FaultyUsb& usb) {
+            constexpr std::uint8_t kSession = 2, kLapsed = 2;
+            const auto report = usb.device().getFeature(kSession);
+            return report && (*report)[16] == kLapsed;
+        });
+    };
+    UsbipClient high(port()), super(port());
+    ASSERT_EQ(high.import("1-1"), 0U);
+    ASSERT_EQ(super.import("1-2"), 0U);
+    test::beginDarkFrame(high, {16, 8});
+    test::beginDarkFrame(super, {16, 8});
+    EXPECT_EQ(high.get(0x80, 6, 0x0100, 0, 8).data.size(), 8U);
+    EXPECT_FALSE(lapsed(first));
+    EXPECT_EQ(super.get(0x80, 6, 0x0100, 0, 8).data.size(), 8U);
+    EXPECT_TRUE(lapsed(second));
+    EXPECT_EQ(high.get(0x80, 6, 0x0100, 0, 64).data.size(), 18U);
+    EXPECT_TRUE(lapsed(first));
+}
+
+TEST_F(UsbipServerTest, ATransferToTheRigBringsNothingWhateverItsSetupSays) {
+    UsbipClient client(port());
+    ASSERT_EQ(client.import("1-1"), 0U);
+    client.submit(false, 0, 0, UsbipClient::setup(0x80, 6, 0x0100, 0, 18));
+    EXPECT_EQ(client.next(false).command, 3U);
+    EXPECT_EQ(client.get(0x80, 6, 0x0100, 0, 18).data.size(), 18U);
+}
+
+TEST_F(UsbipServerTest, ResendsWithoutEndAreNotKept) {
+    UsbipClient client(port());
+    ASSERT_EQ(client.import("1-1"), 0U);
+    test::beginDarkFrame(client, {16, 8});
+    const auto stats = [&] {
+        return first.with([](FaultyUsb& usb) { return usb.device().stats(); });
+    };
+    ASSERT_TRUE(test::waitUntil([&] { return stats().framesMade == 1U; }));
+    for (std::uint16_t sequence = 3; sequence < 60; ++sequence) {
+        const auto report = driver::encode(
+            driver::Command{.sessionLow = 7,
+                            .sequence = sequence,
+                            .op = driver::Op::Resend,
+                            .arguments = driver::encode(driver::Resend{.captureId = 1})});
+        client.submit(false, 1, 64, {}, Bytes(report.begin(), report.end()));
+        EXPECT_EQ(client.next(false).status, 0);
+    }
+    constexpr unsigned kChunks = 3;  // of the frame
+    EXPECT_EQ(stats().resends, kChunks * kFrameRam);
+}
+
+TEST(UsbipLine, ACableThatWasPulledBeforeItWasLookedAtIsPulled) {
+    LiveRig rig({.errors = {}});
+    rig.with([](FaultyUsb& usb) {
+        usb.unplug();
+        usb.plug();
+    });
+    std::array<int, 2> ends{};
+    ASSERT_EQ(socketpair(AF_UNIX, SOCK_STREAM, 0, ends.data()), 0);
+    StreamSocket ours(ends[0]);
+    const StreamSocket theirs(ends[1]);
+    constexpr int kPullsBefore = 0;
+    EXPECT_TRUE(UsbipLine(rig, ours, {}, kPullsBefore).serve({}));
+}
+
+TEST(StreamSocket, WritingToOneWhoDoesNotReadEndsWhenItIsToStop) {
+    std::array<int, 2> ends{};
+    ASSERT_EQ(socketpair(AF_UNIX, SOCK_STREAM, 0, ends.data()), 0);
+    StreamSocket ours(ends[0]);
+    const StreamSocket theirs(ends[1]);
+    std::stop_source stop;
+    const std::jthread stopper([&] {
+        std::this_thread::sleep_for(50ms);
+        stop.request_stop();
+    });
+    EXPECT_FALSE(ours.write(Bytes(std::size_t{16} << 20), 1h, stop.get_token()));
+}
+
+TEST(StreamSocket, AnEndThatSaysNothingIsAskedWhetherItIsThere) {
+    StreamSocket socket(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+    socket.watchOtherEnd();
+    const auto option = [&](int level, int name) {
+        int value = 0;
+        socklen_t length = sizeof value;
+        EXPECT_EQ(getsockopt(socket.descriptor(), level, name, &value, &length), 0);
+        return value;
+    };
+    EXPECT_EQ(option(SOL_SOCKET, SO_KEEPALIVE), 1);
+    EXPECT_EQ(option(IPPROTO_TCP, TCP_KEEPIDLE), 5);
+    EXPECT_EQ(option(IPPROTO_TCP, TCP_USER_TIMEOUT), 11000);
 }
 
 }  // namespace

@@ -118,6 +118,18 @@ TEST_F(SimServe, AFaultScriptPullsTheCable) {
     EXPECT_TRUE(waitUntil([&] { return UsbipClient(serving.port()).import("1-1") == 4U; }));
 }
 
+TEST_F(SimServe, SaysAllRigsThoughTheScriptPullsThemAtOnce) {
+    writeText(gonio / "faults", "at 0s unplug\n");
+    Serving serving(gonio,
+                    {"--serial", "LAB-2", "--serial", "LAB-1", "--faults", gonio / "faults"});
+    const Json& rigs = serving.document()["rigs"];
+    ASSERT_EQ(rigs.size(), 2U);
+    EXPECT_EQ(rigs[0]["serial"], "LAB-1");
+    EXPECT_EQ(rigs[1]["serial"], "LAB-2");
+    EXPECT_EQ(rigs[1]["bus_id"], "1-2");
+    EXPECT_TRUE(waitUntil([&] { return UsbipClient(serving.port()).import("1-2") == 4U; }));
+}
+
 TEST_F(SimServe, SaysWhatIsWrongAndTheCure) {
     EXPECT_NE(refused(2, {}).find("--usbip"), std::string::npos);
     EXPECT_NE(refused(2, {"--usbip", "--attach"}).find("--attach"), std::string::npos);
@@ -126,6 +138,7 @@ TEST_F(SimServe, SaysWhatIsWrongAndTheCure) {
     EXPECT_NE(refused(2, {"--usbip", "--serial", "A", "--serial", "A"}).find("twice"),
               std::string::npos);
     EXPECT_NE(refused(2, {"--usbip", "--serial", ""}).find("printable"), std::string::npos);
+    EXPECT_NE(refused(2, {"--usbip", "--serial", "x y"}).find("blanks"), std::string::npos);
     EXPECT_NE(refused(2, {"--usbip", "--camera", "usb1"}).find("camera"), std::string::npos);
     writeText(gonio / "bad", "at noon unplug\n");
     EXPECT_NE(refused(6, {"--usbip", "--faults", gonio / "bad"}).find("line 1"), std::string::npos);
