@@ -11,8 +11,12 @@ namespace gonio::driver {
 class CaptureIds {
 public:
     [[nodiscard]] std::uint64_t next(std::uint64_t planStep);
+    [[nodiscard]] static std::uint64_t planStepOf(std::uint64_t captureId) {
+        return captureId >> kAttemptBits;
+    }
 
 private:
+    static constexpr int kAttemptBits = 16;
     struct Used {
         std::uint64_t planStep = 0;
         std::uint16_t attempt = 0;

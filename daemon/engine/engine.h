@@ -150,6 +150,7 @@ private:
     // A job that goes on (engine_recovery.cpp).
     [[nodiscard]] Result<driver::Transport*> comeBack(const Error& lost);
     [[nodiscard]] Result<driver::Transport*> lookAgain();
+    [[nodiscard]] std::optional<Error> recordingEnded(const Error& lost) const;
     [[nodiscard]] Result<void> awaitLight(const Error& why);
     [[nodiscard]] Result<bool> mayLight();
     void pause();

@@ -4,6 +4,7 @@
 #include "daemon/engine/engine.h"
 #include "daemon/engine/fault_text.h"
 #include "daemon/engine/monitor.h"
+#include "driver/replay.h"
 #include "proc/core/log.h"
 #include "proc/core/number_text.h"
 
@@ -21,6 +22,15 @@ Error gaveUp(const Error& why, Seconds patience) {
 
 }  // namespace
 
+/// Nothing comes from a recording that is over, or that was left: why the job ends here.
+std::optional<Error> Engine::recordingEnded(const Error& lost) const {
+    const driver::Replay* replay = port_.replay();
+    const auto end = replay ? replay->end() : std::nullopt;
+    if (!end) return std::nullopt;
+    if (lost.message.find(end->message) != std::string::npos) return lost;
+    return Error{lost.kind, lost.message + "; " + end->message, lost.deviceStatus};
+}
+
 /// Or until somebody wants the job to end.
 void Engine::pause() {
     std::unique_lock lock(mutex_);
@@ -30,6 +40,7 @@ void Engine::pause() {
 /// Outside of a job nobody waits: the owner looks for it again by itself.
 Result<driver::Transport*> Engine::comeBack(const Error& lost) {
     if (monitor_ == nullptr || !monitor_->mayWait()) return lost;
+    if (const auto ended = recordingEnded(lost)) return *ended;
     log::warning(monitor_->job() + ": " + lost.message + "; waiting for the rig");
     port_.close();
     publish([](EngineStatus& status) { status.rig.reset(); });
@@ -42,6 +53,7 @@ Result<driver::Transport*> Engine::comeBack(const Error& lost) {
             Result<driver::Transport*> there = lookAgain();
             if (there) return there;
             hinder(there.error());
+            if (const auto ended = recordingEnded(lost)) return *ended;
         }
         pause();
     }
