@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "daemon/finest_binning.h"
 #include "proc/plan/prediction.h"
 
 namespace gonio::daemon {
@@ -20,6 +21,16 @@ proc::RigTiming timingOf(const driver::RigInfo& rig, const RigProfile& profile) 
     timing.transfer = std::min(timing.transfer, timing.framePeriod);
     timing.ledSettle = std::chrono::milliseconds(rig.ident.ledSettleMs);
     return timing;
+}
+
+/// Of one pixel of the pictures: a binned one, the mean of its members, has the noise of one with
+/// all their electrons.
+proc::SensorNoise noiseOfPixel(proc::SensorNoise noise, int binning) {
+    const int members = binning * binning;
+    noise.electronsPerDn *= members;
+    noise.readNoiseElectrons *= binning;
+    noise.darkElectronsPerSecond *= members;
+    return noise;
 }
 
 /// Of one state. NaN where nothing is known.
@@ -51,7 +62,7 @@ Responsivities::Cells responsivitiesOf(const proc::References& references,
 proc::RigModel rigModel(const driver::RigInfo& rig,
                         const RigProfile& profile,
                         double sensorCelsius) {
-    const proc::SensorNoise& noise = profile.noise;
+    const proc::SensorNoise noise = noiseOfPixel(profile.noise, finestBinning(rig.limits));
     proc::RigModel model{.sensor = {.noise = noise,
                                     .blackDn = static_cast<double>(rig.blackLevel),
                                     .fullWellElectrons = noise.fullScaleDn * noise.electronsPerDn,

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "daemon/finest_binning.h"
 #include "driver/rig.h"
 #include "proc/core/number_text.h"
 
@@ -131,8 +132,8 @@ Finding interlock(const driver::Status& status) {
 Result<driver::Capture> darkFrames(driver::Rig& rig) {
     const driver::RigInfo info = rig.identify();
     const auto shortest = std::max(kExposure, info.exposureMin);
-    if (auto done = rig.configure({.x = 0, .y = 0, .size = info.sensor, .binning = 1}); !done)
-        return done.error();
+    const Window whole{.size = info.sensor, .binning = finestBinning(info.limits)};
+    if (auto done = rig.configure(whole); !done) return done.error();
     return rig.capture({.planStep = 1, .exposure = shortest, .frames = 2, .keepLit = false});
 }
 
@@ -186,8 +187,12 @@ Finding noise(const Result<driver::Capture>& dark, const RigProfile& profile) {
     if (!dark) return {"noise", Verdict::Note, "no frame to judge", ""};
     const Frame& frame = dark->front();
     const DarkNoise seen = noiseOf(frame, (*dark)[1]);
-    const double wanted = std::sqrt(profile.noise.darkVariance(frame.exposure.seconds())) /
-                          profile.noise.electronsPerDn;
+    // A binned pixel is the mean of its members; it is rounded once.
+    const double electronsPerDn = profile.noise.electronsPerDn;
+    const double rounding = electronsPerDn * electronsPerDn / 12;
+    const double analogue = profile.noise.darkVariance(frame.exposure.seconds()) - rounding;
+    const int members = frame.window.binning * frame.window.binning;
+    const double wanted = std::sqrt(analogue / members + rounding) / electronsPerDn;
     const std::string text = fixed(seen.sigma, 2) + " DN, " + profile.name + " says " +
                              fixed(wanted, 2) + "; black " + fixed(seen.mean, 1) +
                              " DN, the rig says " + std::to_string(frame.blackLevel);

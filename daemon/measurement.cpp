@@ -8,6 +8,7 @@
 
 #include "daemon/alongside.h"
 #include "daemon/black_check.h"
+#include "daemon/finest_binning.h"
 #include "daemon/gathering.h"
 #include "daemon/glare_views.h"
 #include "daemon/sample_pose.h"
@@ -213,13 +214,14 @@ proc::SampleSet asIfFlat(const PlacementSignals& signals,
 
 }  // namespace
 
+/// Binned only by a rig that sends no other pictures: then as little as it can.
 Result<Window> configureWindow(driver::Rig& rig) {
-    const Size sensor = rig.identify().sensor;
-    const int side = std::min(sensor.width, sensor.height);
-    const Window window{.x = (sensor.width - side) / 2,
-                        .y = (sensor.height - side) / 2,
+    const driver::RigInfo info = rig.identify();
+    const int side = std::min(info.sensor.width, info.sensor.height);
+    const Window window{.x = (info.sensor.width - side) / 2,
+                        .y = (info.sensor.height - side) / 2,
                         .size = {side, side},
-                        .binning = 1};
+                        .binning = finestBinning(info.limits)};
     const Result<void> done = rig.configure(window);
     if (!done) return done.error();
     return window;

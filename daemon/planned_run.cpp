@@ -41,6 +41,22 @@ proc::DarkLibrary nominalDarks(const std::vector<Frame>& frames, const proc::Sen
     return library;
 }
 
+/// A binned pixel's rate is the mean of its members'; the rig model counts all their electrons.
+void gatherMembers(std::vector<proc::PlanCell>& cells, int binning) {
+    for (proc::PlanCell& cell : cells) {
+        cell.rate *= binning * binning;
+        cell.background *= binning * binning;
+    }
+}
+
+/// Seconds on a slow computer, in which nothing else would feed the rig's heartbeat.
+Responsivities responsivitiesBeside(const Bench& bench, const RigReferences& references) {
+    const std::vector<Radians> angles = bench.rig.identify().ledAngles;
+    const auto work = [&] { return Responsivities(references, angles); };
+    auto made = alongside(bench.rig, bench.attendance.alive, work);
+    return made ? std::move(*made) : work();
+}
+
 double sensorCelsius(const Frame& frame) {
     constexpr double kUsual = 25;
     return frame.celsius[Frame::Sensor].value_or(kUsual);
@@ -56,7 +72,7 @@ PlannedRun::PlannedRun(const Bench& bench,
       goal_(goal),
       sequencer_(bench.rig, bench.profile, bench.nextPlanStep, bench.attendance),
       states_(sequencer_.states()),
-      responsivities_(references, bench.rig.identify().ledAngles),
+      responsivities_(responsivitiesBeside(bench, references)),
       floor_(floorOf(references)),
       rig_(rigModel(bench.rig.identify(), bench.profile, proc::SensorModel{}.celsius)),
       pilots_(states_.size()) {}
@@ -181,11 +197,10 @@ Result<void> PlannedRun::learn(std::size_t state) {
         const auto merged =
             proc::merge(frames, of.band, nominalDarks(frames, rig_.sensor), bench_.profile.noise);
         if (!merged) return merged.error();
-        return proc::StatePilot{
-            .led = of.led,
-            .band = of.band,
-            .cells = proc::pilotCells(
-                glare_->bin(*merged, *binning_), responsivities_.of(of), *binning_)};
+        auto cells =
+            proc::pilotCells(glare_->bin(*merged, *binning_), responsivities_.of(of), *binning_);
+        gatherMembers(cells, merged->window.binning);
+        return proc::StatePilot{.led = of.led, .band = of.band, .cells = std::move(cells)};
     });
     return {};
 }
@@ -429,7 +444,11 @@ void PlannedRun::tellOutlook(std::size_t capturesTaken) const {
 }
 
 proc::Prediction PlannedRun::achieved(const Captured& captured) const {
-    return daemon::achieved(captured.signals, responsivities_, floor_, goal_.fMin);
+    const auto work = [&] {
+        return daemon::achieved(captured.signals, responsivities_, floor_, goal_.fMin);
+    };
+    const auto done = alongside(bench_.rig, bench_.attendance.alive, work);
+    return done ? *done : work();
 }
 
 }  // namespace gonio::daemon

@@ -123,7 +123,8 @@ std::uint16_t Device::setExposure(const SetExposure& args, Arguments& result) {
 
 std::uint16_t Device::setFormat(const SetFormat& args, Arguments& result) {
     if (capture_) return status::kBadState;
-    const bool binning = args.binning == 1 || args.binning == 2 || args.binning == 4;
+    const bool binning = (args.binning == 1 || args.binning == 2 || args.binning == 4) &&
+                         (limits().binnings & args.binning) != 0;
     const auto stepped = [&](std::uint16_t v) {
         return v % kRoiStep == 0 && (!binning || v % args.binning == 0);
     };

@@ -27,6 +27,9 @@ std::array<std::uint16_t, 3> whiteBalance() {
     return levels;
 }
 
+/// A rig whose serial number begins with COARSE sends pictures of 4 x 4 sensor pixels only.
+bool sendsBinnedOnly(const std::string& serial) { return serial.starts_with("COARSE"); }
+
 }  // namespace
 
 RigState Device::state() const {
@@ -63,7 +66,7 @@ Ident Device::ident() const {
 Limits Device::limits() const {
     Limits v;
     v.formats = 0b11;
-    v.binnings = 0b111;
+    v.binnings = sendsBinnedOnly(serial()) ? 0b100 : 0b111;
     v.roiStep = kRoiStep;
     v.maxFrames = kMaxFrames;
     v.framePeriodUs = static_cast<std::uint32_t>(link().framePeriod.count() / 1000);

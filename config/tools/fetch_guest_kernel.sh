@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # The kernel of the guest that tests/guest boots, from the newest linux-image of this Debian:
 #   config/tools/fetch_guest_kernel.sh FOLDER
-# FOLDER then holds vmlinux, the modules in the order in which they are loaded, and `version`; one that
-# is complete is left as it is. Neither root nor a mounted image is needed, but apt's lists are.
+# FOLDER then holds vmlinux, the modules in the order in which they are loaded, `version`, and `modules`,
+# for which it was filled; one that is complete is left as it is, one for other modules is filled anew.
+# Neither root nor a mounted image is needed, but apt's lists are.
 set -euo pipefail
 folder=$1
-modules=(vhci-hcd usbhid hid-generic)
-[ ! -f "$folder/version" ] || exit 0
+modules=(vhci-hcd usbhid hid-generic e1000)
+[ ! -f "$folder/version" ] || [ "$(cat "$folder/modules" 2>/dev/null)" != "${modules[*]}" ] || exit 0
 
 fail() {
     echo "$1" >&2
@@ -36,7 +37,7 @@ deb=$(ls ./linux-image-*.deb)
 dpkg-deb --fsys-tarfile "$deb" | tar -x --wildcards './boot/vmlinuz-*' './lib/modules/*/modules.*' \
     './lib/modules/*/kernel/drivers/usb/common/*' './lib/modules/*/kernel/drivers/usb/core/*' \
     './lib/modules/*/kernel/drivers/usb/usbip/*' './lib/modules/*/kernel/drivers/hid/hid*' \
-    './lib/modules/*/kernel/drivers/hid/usbhid/*'
+    './lib/modules/*/kernel/drivers/hid/usbhid/*' './lib/modules/*/kernel/drivers/net/ethernet/intel/e1000/*'
 version=$(ls lib/modules)
 depmod -b . "$version" 2>/dev/null
 
@@ -47,6 +48,7 @@ xz -dc --single-stream >vmlinux < <(tail -c "+$((offset + 1))" "boot/vmlinuz-$ve
 [ "$(head -c 4 vmlinux | tail -c 3)" = ELF ] || fail "no guest kernel: vmlinuz-$version holds no ELF"
 
 # In the order of loading; unpacked and without debug information.
+rm -f ../version ../??-*.ko
 number=10
 for module in "${modules[@]}"; do
     while read -r word file _; do
@@ -60,4 +62,5 @@ for module in "${modules[@]}"; do
     done < <(modprobe -d . -S "$version" --show-depends "$module")
 done
 mv vmlinux ..
+echo "${modules[*]}" >../modules
 echo "$version" >../version

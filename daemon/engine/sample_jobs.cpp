@@ -84,7 +84,7 @@ Result<BackingEvidence> backingEvidence(const JobRun& run) {
     if (run.request().against.empty()) return evidence;
     const Result<SampleRecord> record = run.bench().store.sample(run.request().against);
     if (!record) return record.error();
-    Result<proc::SampleSet> other = proc::readGonio(record->file);
+    auto other = run.whileAlive([&] { return proc::readGonio(record->file); });
     if (!other) return other.error();
     evidence.other = std::move(*other);
     if (Result<void> good = checkOther(evidence); !good) return good.error();
@@ -106,7 +106,7 @@ Result<Loaded> load(const JobRun& run) {
     for (const ReferenceRecord* one : all) {
         if (Result<void> fits = run.fitsThisRig(*one); !fits) return fits.error();
     }
-    Result<References> certified = loadReferences(run.profile());
+    auto certified = run.whileAlive([&] { return loadReferences(run.profile()); });
     if (!certified) return certified.error();
     return Loaded{std::move(*set), std::move(*records), std::move(*certified)};
 }

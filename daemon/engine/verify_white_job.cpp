@@ -107,7 +107,7 @@ Result<Json> verifyWhite(const JobRun& run) {
                               {"texture", grain}});
         }
     }
-    const Result<References> certified = loadReferences(run.profile());
+    const auto certified = run.whileAlive([&] { return loadReferences(run.profile()); });
     if (!certified) return certified.error();
     const double perDirection = certified->white->certificate().uPerDirection;
     if (Result<void> good = checkWhiteAgain(run, change, texture, perDirection); !good)

@@ -10,7 +10,7 @@
 namespace gonio::proc {
 namespace {
 
-constexpr int kPoints = 4;  // per side of a sensor pixel
+constexpr int kPoints = 4;  // per side of a pixel; twice as many where it is binned
 constexpr double kSeenWhole = 0.95;
 constexpr double kMostSaturated = 0.02;
 constexpr std::uint32_t kNoCell = std::numeric_limits<std::uint32_t>::max();
@@ -38,7 +38,7 @@ public:
     /// Adds what pixel (x, y) gives to each cell that it touches.
     void split(int x, int y, std::uint32_t pixel, std::vector<CellShare>& out) const {
         const std::size_t first = out.size();
-        const int points = kPoints * window_.binning;
+        const int points = kPoints * std::min(window_.binning, 2);
         for (int j = 0; j < points; ++j) {
             for (int i = 0; i < points; ++i) {
                 const std::uint32_t cell = cellAt(x + (i + 0.5) / points, y + (j + 0.5) / points);

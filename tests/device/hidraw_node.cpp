@@ -23,7 +23,9 @@ using namespace std::chrono_literals;
 constexpr auto kKernelPatience = 1200ms;
 
 const sim::UsbReply kRefused{.answer = sim::UsbAnswer::Stall, .data = {}};
-constexpr int kReportsKept = 63;  // by hidraw for each open file: the oldest
+// The queue of 63 that hidraw has, and what it loses, is in the rig (sim/notices.h), where it is
+// counted: more than that never waits here but where the reader sleeps.
+constexpr int kReportsKept = 512;
 
 /// What nobody has read must not meet the next one who opens the node.
 void discardUnread(int pipe) {
@@ -64,7 +66,6 @@ void HidrawNode::connect() {
             halted_ = true;
             return;
         }
-        // A full queue loses the newest, as hidraw does.
         int unread = 0;
         const std::scoped_lock whole(writing_);
         const int most = kReportsKept * static_cast<int>(report.size());

@@ -103,14 +103,18 @@ private:
 class Search {
 public:
     /// `calls` may be null.
-    Search(RigDoor& door, CallWatch* calls, Outcome& outcome, int mostComebacks)
-        : door_(door), watch_(calls), outcome_(outcome), left_(mostComebacks) {}
+    Search(RigDoor& door, CallWatch* calls, Outcome& outcome, const SearchLimits& limits)
+        : door_(door),
+          watch_(calls),
+          outcome_(outcome),
+          left_(limits.comebacks),
+          each_(limits.each) {}
 
     Result<driver::Transport*> operator()(const Error& lost) {
         outcome_.said += lost.message + "\n";
         outcome_.detected = std::max(outcome_.detected, sinceUnseenPull());
         if (left_-- == 0) return gaveUp("it was lost again and again");
-        for (const Nanoseconds end = door_.now() + kGiveUp; door_.now() < end;) {
+        for (const Nanoseconds end = door_.now() + each_; door_.now() < end;) {
             door_.close();
             door_.pause(kLook);
             door_.with([this](sim::FaultyUsb& usb) { pulls_ = usb.pulls(); });
@@ -137,6 +141,7 @@ private:
     Outcome& outcome_;
     int pulls_ = 0;
     int left_;
+    Nanoseconds each_;
 };
 
 /// Its pictures; empty: it must be redone, for the rig has rebooted.
@@ -239,7 +244,7 @@ void run(RigDoor& door,
          Outcome& outcome) {
     constexpr int kMostComebacks = 60;
     outcome.counts["bracketsRedone"] = outcome.counts["deviceStatus"] = 0;
-    rig.onLost(Search(door, &calls, outcome, kMostComebacks));
+    rig.onLost(Search(door, &calls, outcome, {.comebacks = kMostComebacks, .each = kGiveUp}));
     Result<void> done = rig.configure(setup.window);
     if (done) done = takeAll(rig, outcome);
     outcome.verdict = "completed";
@@ -268,8 +273,8 @@ bool goesDark(RigDoor& door) {
 
 }  // namespace
 
-driver::Comeback comebackThrough(RigDoor& door, Outcome& outcome, int most) {
-    return Search(door, nullptr, outcome, most);
+driver::Comeback comebackThrough(RigDoor& door, Outcome& outcome, const SearchLimits& limits) {
+    return Search(door, nullptr, outcome, limits);
 }
 
 void beginScript(RigDoor& door, const sim::FaultScript& script, Outcome& outcome) {

@@ -39,9 +39,15 @@ struct Outcome {
 
 /// The script's time begins; what the rig and other scripts did before is not counted.
 void beginScript(RigDoor& door, const sim::FaultScript& script, Outcome& outcome);
-/// Looks for a lost rig until it is back, for 2.5 s each time, so many times. Says in the outcome
-/// what it was told. Both are borrowed.
-[[nodiscard]] driver::Comeback comebackThrough(RigDoor& door, Outcome& outcome, int most);
+/// How often a lost rig is looked for, and how long each time.
+struct SearchLimits {
+    int comebacks = 0;
+    Nanoseconds each{0};
+};
+/// Looks for a lost rig until it is back. Says in the outcome what it was told. Both are borrowed.
+[[nodiscard]] driver::Comeback comebackThrough(RigDoor& door,
+                                               Outcome& outcome,
+                                               const SearchLimits& limits);
 /// Times that it was lost since they were last noted.
 void noteInterruptions(driver::Rig& rig, Outcome& outcome);
 /// What the driver saw of the rig since it was opened and what the script did since it began, kind

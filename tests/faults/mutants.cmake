@@ -57,8 +57,6 @@ mutant(F06 usb usb_stream_transport.cpp
     [[libusb_clear_halt(rig_.handle.get(), rig_.interfaces.bulkIn)]] [[0]])
 mutant(F06-error usb usb_stream_transport.cpp [[stalled ? 0 : askWhetherThere()]]
     [[stalled ? 0 : LIBUSB_ERROR_IO]])
-mutant(F09 usb usb_stream_transport.cpp [[++counters_.overflows]] [[holding_ = true]])
-mutant(F06 usb usb_stream_transport.cpp [[slot.place == Place::InFlight]] [[false]])
 mutant(F15-none usb usb_stream_transport.cpp
     [[steadyNow() - *starvedSince_ >= kMemoryLimit]] [[true]])
 mutant(F16-until-reset inproc watched_transport.cpp [[port == Port::Reset]] [[false]])

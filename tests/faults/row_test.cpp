@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <map>
+#include <optional>
 
 #include "tests/faults/measurement.h"
 #include "tests/faults/row_seeds.h"
@@ -134,6 +136,11 @@ TEST(FaultRowComplaints, WhatNobodyCountsIsAsked) {
 }
 
 TEST(FaultRowSeeds, NoSeedAtAllIsRefused) {
+    std::map<const char*, std::optional<std::string>> asked;
+    for (const char* variable : {"GONIO_FAULT_SEEDS", "GONIO_FAULT_SEED"}) {
+        const char* text = std::getenv(variable);
+        asked[variable] = text ? std::optional<std::string>(text) : std::nullopt;
+    }
     for (const char* variable : {"GONIO_FAULT_SEEDS", "GONIO_FAULT_SEED"}) {
         for (const char* text : {"0", "-1", "many", "", "3x", "99999999999999999999"}) {
             ASSERT_EQ(setenv(variable, text, 1), 0);
@@ -142,6 +149,12 @@ TEST(FaultRowSeeds, NoSeedAtAllIsRefused) {
         ASSERT_EQ(setenv(variable, "3", 1), 0);
         EXPECT_EQ(seedsOf(1).last, 3);
         ASSERT_EQ(unsetenv(variable), 0);
+    }
+    // The rows of this process are played with what was asked for.
+    for (const auto& [variable, text] : asked) {
+        if (text) {
+            ASSERT_EQ(setenv(variable, text->c_str(), 1), 0);
+        }
     }
 }
 

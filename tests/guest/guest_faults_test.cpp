@@ -13,11 +13,10 @@ namespace {
 class GuestFaults : public testing::TestWithParam<const char*> {};
 
 TEST_P(GuestFaults, HaveTheSameVerdict) {
-    constexpr int kSide = 128, kChunk = 8192;  // five chunks, small pictures
-    constexpr int kSlowMachine = 10;           // an emulated one
-    const fault_test::RigSetup setup = fault_test::setupOf(kSide, kChunk);
+    constexpr int kSide = 128, kChunk = 4096;  // eight chunks, as on the other doors
+    fault_test::RigSetup setup = fault_test::setupOf(kSide, kChunk);
+    setup.config.serial = "SIM-0044";  // the other tests' rig is plugged in meanwhile
     fault_test::Row row = fault_test::readRow(GetParam());
-    row.detected *= kSlowMachine;
     row.script.seed = 1;
     const auto door = cabled(setup);
     const fault_test::Outcome outcome = fault_test::measure(*door, setup, row);

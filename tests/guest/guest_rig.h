@@ -20,19 +20,36 @@ namespace gonio::guest_test {
 
 using namespace std::chrono_literals;
 
+// Not the only rig in the guest: the daemon has one of its own (measure.sh). Each test names its.
+inline constexpr const char* kSerial = "SIM-0042";
+inline constexpr const char* kOtherSerial = "SIM-0043";
 inline constexpr std::uint64_t kSession = 0x1122334455667788;
 inline constexpr Window kSmallWindow{.x = 512, .y = 384, .size = {128, 128}, .binning = 1};
 /// The guest's processors are emulated, and others want the host's.
 inline constexpr auto kPatience = 20s;
 
 inline sim::DeviceConfig rigConfig(std::uint32_t bootCount = 1) {
-    return {.serial = "SIM-0042", .seed = 11, .bootCount = bootCount, .errors = {}};
+    return {.serial = kSerial, .seed = 11, .bootCount = bootCount, .errors = {}};
 }
 
 inline void placeMattGrey(sim::Device& device) {
     device.place({.role = sim::Role::Sample,
                   .surface = std::move(*proc::makeModel("lambert,albedo=0.5")),
                   .wedge = {}});
+}
+
+inline Result<std::unique_ptr<driver::Transport>> openRig() {
+    return driver::openUsb({.serial = kSerial});
+}
+
+/// Those that the tests have plugged in.
+inline std::vector<driver::UsbRig> ownRigs() {
+    std::vector<driver::UsbRig> own;
+    for (const char* serial : {kSerial, kOtherSerial}) {
+        const auto rigs = driver::listUsb({.serial = serial});
+        if (rigs) own.insert(own.end(), rigs->begin(), rigs->end());
+    }
+    return own;
 }
 
 /// Another step of the plan each time: one session serves all tests.
@@ -89,6 +106,8 @@ inline std::vector<Frame> undisturbed(const driver::CaptureRequest& request) {
 
 class GuestRig : public testing::Test {
 protected:
+    /// The twin works out its scene before a rig waits for a heartbeat meanwhile.
+    static void SetUpTestSuite() { (void)undisturbed(litFrames()); }
     void SetUp() override {
         if (!rig) rig = std::make_unique<CabledRig>();
         rig->live.with([](sim::FaultyUsb& usb) {
@@ -109,9 +128,9 @@ protected:
     static void awaitRigs(std::size_t count) {
         EXPECT_TRUE(test::waitUntil(
             [&] {
-                const auto rigs = driver::listUsb();
-                return rigs && rigs->size() == count &&
-                       std::all_of(rigs->begin(), rigs->end(), [](const driver::UsbRig& one) {
+                const auto rigs = ownRigs();
+                return rigs.size() == count &&
+                       std::all_of(rigs.begin(), rigs.end(), [](const driver::UsbRig& one) {
                            return one.obstacle.empty();
                        });
             },
@@ -120,7 +139,7 @@ protected:
             << "not seen: " << count << " rigs";
     }
     void open() {
-        auto transport = driver::openUsb();
+        auto transport = openRig();
         ASSERT_TRUE(transport) << transport.error().message;
         transport_ = std::move(*transport);
         auto opened = driver::Rig::open(*transport_, kSession);

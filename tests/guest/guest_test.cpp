@@ -41,7 +41,9 @@ fs::path sysfsOfRig() {
         std::ifstream(entry.path() / "idProduct") >> product;
         std::string vendor;
         std::ifstream(entry.path() / "idVendor") >> vendor;
-        if (vendor == "1209" && product == "0001") return entry.path();
+        std::string serial;
+        std::ifstream(entry.path() / "serial") >> serial;
+        if (vendor == "1209" && product == "0001" && serial == kSerial) return entry.path();
     }
     ADD_FAILURE() << "no rig in /sys/bus/usb/devices";
     return {};
@@ -61,8 +63,10 @@ std::vector<fs::path> nodesOfRig() {
     const fs::path rig = sysfsOfRig();
     std::vector<fs::path> nodes{fs::path("/dev/bus/usb") / padded(textOf(rig / "busnum")) /
                                 padded(textOf(rig / "devnum"))};
-    for (const auto& entry : fs::directory_iterator("/dev"))
-        if (entry.path().filename().string().starts_with("hidraw")) nodes.push_back(entry.path());
+    const std::string below = fs::canonical(rig).string() + "/";
+    for (const auto& entry : fs::directory_iterator("/sys/class/hidraw"))
+        if (fs::canonical(entry.path()).string().starts_with(below))
+            nodes.push_back("/dev" / entry.path().filename());
     return nodes;
 }
 
@@ -75,7 +79,7 @@ public:
         child_ = fork();
         if (child_ == 0) {
             ::close(end[1]);
-            const auto transport = driver::openUsb();
+            const auto transport = openRig();
             char word = transport ? 'y' : 'n';
             (void)!write(ready[1], &word, 1);
             (void)!read(end[0], &word, 1);  // until the parent closes it
@@ -101,14 +105,29 @@ private:
     pid_t child_ = 0;
 };
 
+/// Past the driver: its device on the bus where sysfs has it.
+libusb_device_handle* openedBySerial(libusb_context* context) {
+    const int bus = std::stoi(textOf(sysfsOfRig() / "busnum"));
+    const int number = std::stoi(textOf(sysfsOfRig() / "devnum"));
+    libusb_device** list = nullptr;
+    const auto count = libusb_get_device_list(context, &list);
+    libusb_device_handle* handle = nullptr;
+    for (auto i = decltype(count){0}; i < count; ++i) {
+        if (libusb_get_bus_number(list[i]) == bus && libusb_get_device_address(list[i]) == number) {
+            EXPECT_EQ(libusb_open(list[i], &handle), 0);
+        }
+    }
+    if (count >= 0) libusb_free_device_list(list, 1);
+    return handle;
+}
+
 TEST_F(GuestRig, IsEnumeratedWithAllThatIdentifiesIt) {
-    const auto rigs = driver::listUsb();
-    ASSERT_TRUE(rigs) << rigs.error().message;
-    ASSERT_EQ(rigs->size(), 1U);
-    EXPECT_EQ(rigs->front().serial, "SIM-0042");
-    EXPECT_EQ(rigs->front().protocol, "GRP/1.0");
+    const auto rigs = ownRigs();
+    ASSERT_EQ(rigs.size(), 1U);
+    EXPECT_EQ(rigs.front().serial, kSerial);
+    EXPECT_EQ(rigs.front().protocol, "GRP/1.0");
     EXPECT_EQ(textOf(sysfsOfRig() / "speed"), "480");
-    EXPECT_EQ(textOf(sysfsOfRig() / "serial"), "SIM-0042");
+    EXPECT_EQ(textOf(sysfsOfRig() / "serial"), kSerial);
     EXPECT_EQ(nodesOfRig().size(), 2U);
 }
 
@@ -202,7 +221,7 @@ TEST_F(GuestRig, TheReportsReopenedAreThoseOfTheSameRig) {
 TEST_F(GuestRig, AnInterfaceThatAKernelDriverHasIsBusyUntilDetached) {
     libusb_context* context = nullptr;
     ASSERT_EQ(libusb_init(&context), 0);
-    libusb_device_handle* handle = libusb_open_device_with_vid_pid(context, 0x1209, 0x0001);
+    libusb_device_handle* handle = openedBySerial(context);
     ASSERT_NE(handle, nullptr);
     EXPECT_EQ(libusb_kernel_driver_active(handle, 0), 1) << "usbhid";
     EXPECT_EQ(libusb_kernel_driver_active(handle, 1), 0);
@@ -210,7 +229,7 @@ TEST_F(GuestRig, AnInterfaceThatAKernelDriverHasIsBusyUntilDetached) {
     EXPECT_EQ(libusb_set_auto_detach_kernel_driver(handle, 1), 0);
     EXPECT_EQ(libusb_claim_interface(handle, 0), 0);
     // Its node is gone with the kernel's driver: the rig is there and cannot be used.
-    const auto without = driver::openUsb();
+    const auto without = openRig();
     EXPECT_FALSE(without);
     EXPECT_EQ(libusb_release_interface(handle, 0), 0);
     libusb_close(handle);
@@ -223,7 +242,7 @@ TEST_F(GuestRig, AnInterfaceThatAKernelDriverHasIsBusyUntilDetached) {
 TEST_F(GuestRig, HeldByAnotherProcessItIsBusyAndFreeAfterwards) {
     {
         const Holder holder;
-        const auto transport = driver::openUsb();
+        const auto transport = openRig();
         ASSERT_FALSE(transport);
         EXPECT_EQ(transport.error().kind, ErrorKind::Busy) << transport.error().message;
     }
@@ -241,12 +260,12 @@ TEST_F(GuestRig, WithoutPermissionItNamesTheCureAndOpensOnceThereIsOne) {
         for (const fs::path& node : nodes) chmod(node.c_str(), 0666);
     });
     const device_test::WithoutRights unprivileged;  // not the thread that began before
-    const auto refused = driver::openUsb();
+    const auto refused = openRig();
     refusedOnce = true;
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().kind, ErrorKind::Busy);
     EXPECT_NE(refused.error().message.find("udev"), std::string::npos) << refused.error().message;
-    EXPECT_TRUE(test::waitUntil([] { return driver::openUsb().has_value(); }, kBack, 100ms));
+    EXPECT_TRUE(test::waitUntil([] { return openRig().has_value(); }, kBack, 100ms));
 }
 
 TEST_F(GuestRig, AnAutosuspendedRigIsWokenAndStaysAwakeWhileOpen) {
@@ -263,15 +282,15 @@ TEST_F(GuestRig, AnAutosuspendedRigIsWokenAndStaysAwakeWhileOpen) {
 
 TEST_F(GuestRig, OfTwoRigsTheSerialNumberSaysWhich) {
     sim::DeviceConfig config = rigConfig();
-    config.serial = "SIM-0043";
+    config.serial = kOtherSerial;
     CabledRig other(config, 2);
     awaitRigs(2);
     const auto unsure = driver::openUsb();
     ASSERT_FALSE(unsure);
     EXPECT_EQ(unsure.error().kind, ErrorKind::Usage);
-    const auto sure = driver::openUsb({.serial = "SIM-0043"});
+    const auto sure = driver::openUsb({.serial = kOtherSerial});
     ASSERT_TRUE(sure) << sure.error().message;
-    EXPECT_EQ((*sure)->strings().serial, "SIM-0043");
+    EXPECT_EQ((*sure)->strings().serial, kOtherSerial);
     other.unplug();
     awaitRigs(1);
 }

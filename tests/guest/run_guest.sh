@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Boots Debian's kernel under QEMU and runs the tests of the real USB stack in it:
 #   tests/guest/run_guest.sh BUILD [FILTER]
-# BUILD is the build tree that holds the programs. Exit code 77 with one line where it cannot run, 1
+# BUILD is the build tree that holds the programs; FILTER is googletest's, or `daemon` for the daemon's
+# measurement alone, which is else part of the list with GONIO_NIGHTLY. Exit code 77 with one line where it cannot run, 1
 # with GONIO_REQUIRE_GUEST=1. The kernel is fetched once, into build/guest-kernel.
 set -euo pipefail
 source=$(cd "$(dirname "$0")/../.." && pwd)
@@ -15,7 +16,7 @@ skip() {
     [ -z "${GONIO_REQUIRE_GUEST-}" ] || { echo "GONIO_REQUIRE_GUEST is set: this is a failure"; exit 1; }
     exit 77
 }
-for tool in qemu-system-x86_64:qemu-system-x86 busybox:busybox-static cpio:cpio udevadm:udev; do
+for tool in qemu-system-x86_64:qemu-system-x86 busybox:busybox-static cpio:cpio udevadm:udev usbip:usbip; do
     [ -n "$(PATH=$PATH:/usr/sbin:/sbin command -v "${tool%%:*}")" ] ||
         skip "${tool%%:*} not found (apt-get install ${tool#*:})"
 done
@@ -26,14 +27,49 @@ why=$("$source/config/tools/fetch_guest_kernel.sh" "$kernel" 2>&1) || skip "${wh
 echo "kernel $(cat "$kernel/version") there after $(since)"
 
 work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+server=''
+measuring=''
+finish() {
+    [ -z "$measuring" ] || kill "$measuring" 2>/dev/null || true
+    [ -z "$server" ] || kill "$server" 2>/dev/null || true
+    wait
+    rm -rf "$work"
+}
+trap finish EXIT
+
+# The daemon's part. The rig is simulated here, where no picture is emulated, and the guest attaches to it;
+# meanwhile its twin is calibrated and measures in virtual time.
+network=()
+rig=''
+if [ "$filter" = daemon ] || { [ -z "$filter" ] && [ -n "${GONIO_NIGHTLY-}" ]; }; then
+    "$source/tests/guest/twin.sh" "$build" "$work/twin" >"$work/twin.log" 2>&1 &
+    measuring=$!
+    : >"$work/serve.json"
+    GONIO_CONFIG=$source/config "$build/bin/gonio" --store "$work/sim" --json sim serve --usbip --port 0 \
+        --serial COARSE-1 --seed 11 --systematic none --place "$(cat "$source/tests/guest/sample.txt")" \
+        >"$work/serve.json" 2>"$work/serve.log" &
+    server=$!
+    for _ in $(seq 600); do
+        rig=$(sed -n 's/^  "port": \([0-9]*\),*$/\1/p' "$work/serve.json")
+        [ -z "$rig" ] || break
+        kill -0 "$server" 2>/dev/null || break
+        sleep 0.1
+    done
+    [ -n "$rig" ] || { cat "$work/serve.log"; echo "the rig of the guest's daemon is not served"; exit 1; }
+    give="guestfwd=tcp:10.0.2.100:1-cmd:$source/tests/guest/twin.sh give $work/twin"
+    take="guestfwd=tcp:10.0.2.100:2-cmd:$source/tests/guest/twin.sh take $work/twin"
+    # With all instructions that can be emulated, FMA above all: libm's last bits are then the host's.
+    network=(-cpu max -netdev "user,id=net,restrict=off,$give,$take" -device "e1000,netdev=net,romfile=")
+fi
+
 root=$work/root
-mkdir -p "$root"/{bin,dev,lib,lib64,modules,proc,sys,tmp,run,etc/udev/rules.d}
+mkdir -p "$root"/{bin,dev,lib,lib64,modules,proc,sys,tmp,run,var/run,etc/udev/rules.d}
 cp "$kernel"/*.ko "$root/modules/"
 cp "$(command -v busybox)" "$root/bin/busybox"
 cp "$(command -v udevadm)" "$root/bin/udevadm"
 ln -s udevadm "$root/bin/udevd"
 cp "$source/tests/guest/init.sh" "$root/init"
+cp "$source/tests/guest/measure.sh" "$root/"
 chmod +x "$root/init"
 cp "$source/config/linux/70-gonio.rules" "$root/etc/udev/rules.d/"
 # The scripts of the fault matrix, where the program looks for them.
@@ -57,8 +93,8 @@ if [ -r /dev/kvm ] && [ -w /dev/kvm ] && grep -qE '^flags.* (vmx|svm)( |$)' /pro
 boot() {
     timeout --foreground 300 qemu-system-x86_64 -accel "$1" -M pc -m "$memory" -smp 2 \
         -kernel "$kernel/vmlinux" -initrd "$work/initrd" -pidfile "$work/pid" \
-        -append "console=ttyS0 quiet panic=-1 nokaslr mitigations=off acpi=off ${filter:+gonio.filter=$filter}" \
-        -display none -nodefaults -no-reboot -serial stdio </dev/null 2>&1 | sed -u 's/\r$//' | tee "$work/serial"
+        -append "console=ttyS0 quiet panic=-1 nokaslr mitigations=off acpi=off ${filter:+gonio.filter=$filter} gonio.rig=$rig" \
+        -display none -nodefaults "${network[@]}" -no-reboot -serial stdio </dev/null 2>&1 | sed -u 's/\r$//' | tee "$work/serial"
 }
 ready() { grep -q '^GUEST ready' "$work/serial"; }
 # A KVM that starts and hangs is known: then emulation, which always works.
