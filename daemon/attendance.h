@@ -38,6 +38,8 @@ struct Attendance {
         return Result<void>(why);
     };
     std::function<void(const Setback&)> setback = [](const Setback&) {};
+    /// All frames are there: nobody needs to wait for the rig any more. Perhaps more than once.
+    std::function<void()> captured = [] {};
 };
 
 }  // namespace gonio::daemon

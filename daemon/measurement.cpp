@@ -95,6 +95,7 @@ Result<LensRecord> takeLens(const Bench& bench, const PlaceMirror& place) {
         }
         if (Result<void> on = glareViews.take(wedge, sequencer, *darks); !on) return on.error();
     }
+    bench.attendance.captured();
     const proc::SensorPoint middle{window->x + 0.5 * window->size.width,
                                    window->y + 0.5 * window->size.height};
     Result<proc::LensFit> fit =
@@ -146,6 +147,7 @@ Result<Captured> capturePlacement(const Bench& bench,
                                }},
                               then);
         if (!taken) return taken.error();
+        if (!then) bench.attendance.captured();
         if (Result<void> on = gathering.end(); !on) return on.error();
         if (Result<void> on = bench.step(stateName(states[i])); !on) return on.error();
     }
@@ -239,14 +241,14 @@ int placementSteps(const Bench& bench) {
 }
 
 Result<LensRecord> measureLens(const Bench& bench, const PlaceMirror& place) {
-    return thenDark(bench.rig, takeLens(bench, place));
+    return thenDark(bench, takeLens(bench, place));
 }
 
 Result<Captured> measurePlacement(const Bench& bench,
                                   const proc::LensMap& lens,
                                   const BracketPlan& plan,
                                   int darkFrames) {
-    return thenDark(bench.rig, capturePlacement(bench, lens, plan, darkFrames));
+    return thenDark(bench, capturePlacement(bench, lens, plan, darkFrames));
 }
 
 Result<void> checkWhite(const PlacementSignals& white, const PlacementSignals& black) {

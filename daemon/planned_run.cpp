@@ -178,9 +178,9 @@ Result<void> PlannedRun::takePilots() {
 }
 
 void PlannedRun::beginPilots(std::size_t state) {
+    if (learnt_.size() == state) learning_.reset();  // reads those that are void now
     pilots_[state].frames.clear();
-    pilots_[state].boot = bench_.rig.bootId();
-    if (learnt_.size() == state) learning_.reset();  // from those that are void now
+    pilots_[state].breaks = sequencer_.breaks();
 }
 
 /// Begins to learn from a state's pilots, once what is being learnt is known.
@@ -233,8 +233,8 @@ Result<void> PlannedRun::addDark(Microseconds exposure, const Frame& frame) {
 }
 
 Result<Captured> PlannedRun::capture() {
-    if (Result<void> dark = takeDarks(); !dark) return thenDark(bench_.rig, dark.error());
-    return thenDark(bench_.rig, takeStates());
+    Result<void> dark = takeDarks();
+    return thenDark(bench_, dark ? takeStates() : Result<Captured>(dark.error()));
 }
 
 Result<void> PlannedRun::takeDarks() {
@@ -277,9 +277,9 @@ Result<void> PlannedRun::takeDarks() {
     return {};
 }
 
-/// Pilots of another boot than the rig's are not mixed with what it takes now.
+/// Pilots from before a break are not mixed with what the rig takes now.
 bool PlannedRun::stale(std::size_t state) const {
-    return pilots_[state].boot != bench_.rig.bootId();
+    return pilots_[state].breaks != sequencer_.breaks();
 }
 
 std::vector<PlannedRun::Planned> PlannedRun::allCaptures() {
@@ -334,6 +334,7 @@ Result<Captured> PlannedRun::takeStates() {
         const Result<void> taken = takeList(now);
         if (!taken && !now.stale) return taken.error();
     } while (now.stale);
+    bench_.attendance.captured();
     Result<Captured> captured = gathering.finish();
     if (!captured) return captured;
     const Stopwatch comparing(bench_.clock);
@@ -375,10 +376,10 @@ Result<void> PlannedRun::begin(Taking& now, const Planned& first) {
     }
     if (first.pilot) {
         pilots_[now.open].frames.clear();
-        pilots_[now.open].boot = bench_.rig.bootId();
+        pilots_[now.open].breaks = sequencer_.breaks();
     } else if (stale(now.open)) {
         now.stale = true;
-        return Error{ErrorKind::Internal, "the pilots are of another boot"};
+        return Error{ErrorKind::Internal, "the pilots are from before a break"};
     }
     return openState(now);
 }
@@ -405,6 +406,7 @@ Result<void> PlannedRun::advanceTo(Taking& now, std::size_t state) {
         // The first state's are compared with at the end.
         if (now.open > 0) pilots_[now.open].frames = {};
         ++now.open;
+        sequencer_.watch().begin();  // it may hold the last of those
     }
     return {};
 }

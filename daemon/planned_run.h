@@ -5,8 +5,8 @@
 // up as they arrive; at last the pilots of the first state again, which show what has changed
 // meanwhile. The same placement always makes the same captures, however fast the host is.
 //
-// Pilots and captures of a state are one bracket: where the rig has booted between them, its pilots
-// are taken again before its captures, by their own plan steps.
+// Pilots and captures of a state are one bracket: where the rig has booted between them, or would
+// not light, its pilots are taken again before its captures, by their own plan steps.
 //
 // Memory: the pilots, three pictures of 2 MB a state, until their state is captured; then its
 // merged picture, 10 MB; and the sums of two states (merge_accumulator.h).
@@ -40,11 +40,11 @@ public:
     [[nodiscard]] proc::Prediction achieved(const Captured& captured) const;
 
 private:
-    /// A state's pilots: how they are taken, what came of them, and in which boot of the rig.
+    /// A state's pilots: how they are taken, what came of them, and after how many breaks.
     struct Pilots {
         std::vector<KnownShot> shots;
         std::vector<Frame> frames;
-        std::uint32_t boot = 0;
+        int breaks = 0;
     };
     /// A capture of a state.
     struct Planned {

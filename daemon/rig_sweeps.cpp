@@ -253,11 +253,11 @@ int sensorSteps() { return 3 * kExposures; }
 int warmUpSteps() { return static_cast<int>(kBands.size()) * kCycles * (2 + 2 * kWarmSteps); }
 
 Result<SensorRecord> measureSensor(const Bench& bench) {
-    return thenDark(bench.rig, takeSensor(bench));
+    return thenDark(bench, takeSensor(bench));
 }
 
 Result<proc::LedMonitor> measureWarmUp(const Bench& bench) {
-    return thenDark(bench.rig, takeWarmUp(bench));
+    return thenDark(bench, takeWarmUp(bench));
 }
 
 RigProfile withSensor(RigProfile profile, const SensorRecord& sensor, std::int64_t id) {

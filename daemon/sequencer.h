@@ -85,6 +85,8 @@ public:
     [[nodiscard]] Result<proc::DarkLibrary> darks(int frames,
                                                   const std::function<Result<void>()>& done);
 
+    /// whole_brackets.h
+    [[nodiscard]] int breaks() const { return brackets_.breaks(); }
     /// What frames are held against; `begin` of a sink may tell it more.
     [[nodiscard]] FrameWatch& watch() { return brackets_.watch(); }
     /// In the order in which they came.

@@ -60,7 +60,7 @@ Result<std::vector<proc::DarkFrame>> takeDarks(const Bench& bench) {
 int storedDarkSteps(const Bench& bench) { return static_cast<int>(exposuresOf(bench).size()); }
 
 Result<std::vector<proc::DarkFrame>> measureDarks(const Bench& bench) {
-    return thenDark(bench.rig, takeDarks(bench));
+    return thenDark(bench, takeDarks(bench));
 }
 
 std::optional<CalibrationRecord> darksAt(Store& store,

@@ -21,23 +21,21 @@ WholeBrackets::WholeBrackets(driver::Rig& rig,
       profile_(profile),
       nextPlanStep_(nextPlanStep),
       attendance_(attendance),
-      watch_(profile.noise),
-      boot_(rig.bootId()) {}
+      watch_(profile.noise) {}
 
 Result<void> WholeBrackets::take(std::optional<State> state,
                                  const std::function<Result<void>()>& attempt) {
     state_ = state;
     boots_ = oddAttempts_ = 0;
-    cold_ = false;
     while (true) {
         isOdd_ = false;
         watch_.begin();
+        (void)takeReboot();  // seen since the last bracket: nothing of this one is lost
         Result<void> taken = warmUp(state);
         if (taken) taken = attempt();
-        if (rig_.bootId() != boot_) {
-            boot_ = rig_.bootId();
-            cold_ = true;
-            const std::string why = taken ? "the rig has booted again" : taken.error().message;
+        if (taken) return taken;  // of one piece: a boot that was seen after it is the next one's
+        if (takeReboot()) {
+            const std::string& why = taken.error().message;
             if (++boots_ > kBoots) {
                 return Error{ErrorKind::Device,
                              bracketName(state) + ": the rig booted " + std::to_string(boots_) +
@@ -46,7 +44,6 @@ Result<void> WholeBrackets::take(std::optional<State> state,
             tell(Cause::NewBoot, why);
             continue;
         }
-        if (taken) return taken;
         if (Result<void> may = mayTakeAgain(taken.error()); !may) return may;
     }
 }
@@ -59,6 +56,7 @@ Result<void> WholeBrackets::mayTakeAgain(const Error& why) {
     const std::optional<Error> passing = passes(why);
     if (!passing) return why;
     if (Result<void> again = attendance_.suspended(*passing); !again) return again;
+    noteBreak();
     tell(Cause::Suspended, why.message);
     return {};
 }
@@ -88,10 +86,7 @@ Result<void> WholeBrackets::look(std::optional<State> state, const Frame& frame)
 }
 
 Result<void> WholeBrackets::warmUp(std::optional<State> state) {
-    if (!cold_ || !state || profile_.warmUp <= Seconds(0)) {
-        cold_ = false;
-        return {};
-    }
+    if (!cold_ || !state || profile_.warmUp <= Seconds(0)) return {};
     const Microseconds exposure = profile_.exposures.back();
     const double period = std::max(Seconds(exposure), Seconds(rig_.identify().framePeriod)).count();
     int left = static_cast<int>(std::ceil(profile_.warmUp.count() / period));
@@ -110,6 +105,17 @@ Result<void> WholeBrackets::warmUp(std::optional<State> state) {
     }
     cold_ = false;
     return {};
+}
+
+std::optional<Error> WholeBrackets::takeReboot() {
+    std::optional<Error> reboot = rig_.takeReboot();
+    if (reboot) noteBreak();
+    return reboot;
+}
+
+void WholeBrackets::noteBreak() {
+    ++breaks_;
+    cold_ = true;
 }
 
 void WholeBrackets::tell(Cause cause, const std::string& message) const {

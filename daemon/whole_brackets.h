@@ -1,11 +1,12 @@
 #pragma once
 // A bracket is of one piece, or it is taken again from its first shot:
-//   - when the rig has booted meanwhile. Its LED is lit for the profile's warm-up before; at most
-//     three times, or the rig does not stay up;
+//   - when the rig has booted meanwhile: at most three times, or the rig does not stay up;
 //   - when the rig would not light (interlock, temperature), once it may light again;
 //   - when a frame is not what was asked for (frame_watch.h). One that is odd once more is refused
 //     with its evidence; but a bracket without light then is what lies there.
-// Any other error ends it.
+// Any other error ends it. After a boot, and after light that was off for a while, the next lit
+// bracket's LED is lit for the profile's warm-up before. A cable bump of the same boot is none of
+// this: the driver asks for the frames that are missing again (PROTOCOL.md 4).
 
 #include <functional>
 #include <optional>
@@ -37,6 +38,10 @@ public:
     /// The driver has taken frames of it again, by what the rig said of them.
     void rejected(const std::string& evidence) const { tell(Cause::Rejected, evidence); }
 
+    /// How often so far the rig has booted again or refused to light: what was taken at another
+    /// count is not of one piece with what is taken now.
+    [[nodiscard]] int breaks() const { return breaks_; }
+
     [[nodiscard]] FrameWatch& watch() { return watch_; }
     [[nodiscard]] const std::vector<OddFrame>& oddFrames() const { return odd_; }
 
@@ -46,6 +51,8 @@ private:
     [[nodiscard]] Result<void> mayTakeAgain(const Error& why);
     /// Why the rig will light again, though not now; empty: that is not known.
     [[nodiscard]] std::optional<Error> passes(const Error& why);
+    [[nodiscard]] std::optional<Error> takeReboot();
+    void noteBreak();
     void tell(Cause cause, const std::string& message) const;
 
     driver::Rig& rig_;
@@ -54,12 +61,12 @@ private:
     const Attendance& attendance_;
     FrameWatch watch_;
     std::vector<OddFrame> odd_;
-    std::uint32_t boot_;  ///< in which the last bracket was taken
+    int breaks_ = 0;
+    bool cold_ = false;  ///< no lit bracket has been taken since the last of them
 
     // Of the bracket at hand.
     std::optional<State> state_;
     int boots_ = 0, oddAttempts_ = 0;
-    bool cold_ = false;
     bool isOdd_ = false;  ///< the newest of odd_ has ended the attempt
 };
 

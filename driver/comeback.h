@@ -14,7 +14,8 @@ namespace gonio::driver {
 /// Opens the rig that was lost anew, waiting as long as its owner likes: closes the old transport,
 /// which nobody touches any more, and returns the new one, or why it gives up, which ends the call
 /// that was interrupted. It is called again, with the reason, when what it returned could not be
-/// taken up: another serial number, a claim that is held, a rig that was lost again.
+/// taken up: another serial number, a claim that is held, a rig that was lost again; it alone says
+/// how often and for how long that is tried.
 using Comeback = std::function<Result<Transport*>(const Error& lost)>;
 
 /// A gap in the link to a rig that came back.

@@ -284,7 +284,9 @@ Result<void> Rig::collect(const ArmedCapture& armed, const Making& making) {
         const auto done =  // by reference: a function of its own would allocate amid frames
             collector.collect(armed, making.progress, exposed, std::ref(arrived));
         if (!cameBack) return done;
-        if (rebooted_ && !link_->lost()) return *std::exchange(rebooted_, std::nullopt);
+        if (!link_->lost()) {
+            if (auto told = tellReboot()) return *told;
+        }
         if (auto asked = askForHeld(armed, making.progress); !asked) return asked;
     }
 }

@@ -25,6 +25,7 @@
 // serial number is never taken back.
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -123,6 +124,11 @@ public:
 
     /// Empty: a rig that is lost stays so.
     void onLost(Comeback comeback) { onLost_ = std::move(comeback); }
+    /// Called each time the rig has come back, before the call that was interrupted goes on.
+    void onBack(std::function<void()> back) { onBack_ = std::move(back); }
+    /// That the rig has come back of another boot since the last call, or since configure(); no
+    /// capture() tells it any more. Whoever redoes brackets asks this.
+    [[nodiscard]] std::optional<Error> takeReboot() { return std::exchange(rebooted_, {}); }
     /// Changes when the rig comes back from a loss of its power.
     [[nodiscard]] std::uint32_t bootId() const { return link_->ident().bootId; }
     /// Those since the last call, oldest first.
@@ -165,6 +171,7 @@ private:
     template <class Work>
     auto inOneBoot(Work work) -> decltype(work());
     void beginCall();
+    [[nodiscard]] std::optional<Error> tellReboot();
     Result<void> comeBack(const Error& lost);
     [[nodiscard]] Error lostTooOften(const Error& lost) const;
     Result<void> takeUp(Transport& transport);
@@ -196,8 +203,10 @@ private:
     std::optional<OnItsWay> ahead_;
     CaptureIds ids_;
     Comeback onLost_;
+    std::function<void()> onBack_;
     std::uint32_t boot_ = 0;         ///< of the claim that was taken up last
-    std::optional<Error> rebooted_;  ///< not told yet
+    std::optional<Error> rebooted_;  ///< not taken yet
+    bool rebootTold_ = false;        ///< by a capture
     bool faultTold_ = false;         ///< the fault of the stream that the rig is lost by
     int comebacks_ = 0;              ///< ever
     int mostComebacks_ = 0;          ///< of those, in this call
@@ -217,9 +226,9 @@ auto Rig::surviving(Work work) -> decltype(work()) {
 /// As above, and another boot is an error: first of all, before a loss is mended.
 template <class Work>
 auto Rig::inOneBoot(Work work) -> decltype(work()) {
-    if (auto told = std::exchange(rebooted_, std::nullopt)) return *told;
+    if (auto told = tellReboot()) return *told;
     return surviving([&]() -> decltype(work()) {
-        if (auto told = std::exchange(rebooted_, std::nullopt)) return *told;
+        if (auto told = tellReboot()) return *told;
         return work();
     });
 }

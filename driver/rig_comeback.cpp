@@ -7,10 +7,6 @@
 namespace gonio::driver {
 namespace {
 
-// Transports that could not be taken up, one after the other: an owner that has nothing better
-// would never end.
-constexpr int kMostTries = 1000;
-
 // In one call: a rig that comes back and is lost again each time, at the same point, would never
 // end either.
 constexpr int kMostComebacks = 20;
@@ -25,7 +21,7 @@ Result<void> Rig::comeBack(const Error& lost) {
     const Clock& clock = link_->clock();
     Interruption gap{.cause = lost.message, .at = clock.now()};
     Error why = lost;
-    for (int tries = 0; tries < kMostTries; ++tries) {
+    while (true) {
         const Result<Transport*> opened = onLost_(why);
         if (!opened) return opened.error();
         if (auto taken = takeUp(**opened); !taken) {
@@ -40,14 +36,21 @@ Result<void> Rig::comeBack(const Error& lost) {
                               "rig " + link_->strings().serial + " has lost its power: boot id " +
                                   std::to_string(bootId()) + ", was " + std::to_string(boot) +
                                   "; redo the bracket"};
+            rebootTold_ = false;
         }
         boot_ = bootId();
         faultTold_ = false;
         ++comebacks_;
         interruptions_.push_back(std::move(gap));
+        if (onBack_) onBack_();
         return {};
     }
-    return why;
+}
+
+/// Once.
+std::optional<Error> Rig::tellReboot() {
+    if (!rebooted_ || std::exchange(rebootTold_, true)) return std::nullopt;
+    return rebooted_;
 }
 
 /// Claimed, dark and idle, with nothing on its way. The format is set again even to the same boot:

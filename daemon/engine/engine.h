@@ -151,6 +151,10 @@ private:
     [[nodiscard]] Result<driver::Transport*> comeBack(const Error& lost);
     [[nodiscard]] Result<driver::Transport*> lookAgain();
     [[nodiscard]] std::optional<Error> recordingEnded(const Error& lost) const;
+    void resume();
+    [[nodiscard]] bool patientSince(Nanoseconds begin) const {
+        return Seconds(world_.clock.now() - begin) < world_.patience;
+    }
     [[nodiscard]] Result<void> awaitLight(const Error& why);
     [[nodiscard]] Result<bool> mayLight();
     void pause();
@@ -159,7 +163,7 @@ private:
     [[nodiscard]] Result<std::string> runOn(const JobRequest& request, Monitor& monitor);
     [[nodiscard]] Result<std::string> runAtDesk(const JobRequest& request, Monitor& monitor);
     void settle(JobRecord& job, const Result<std::string>& outcome, const Monitor& monitor);
-    void lookAfterRig(JobRecord& job, const Error& why);
+    void lookAfterRig(JobRecord& job);
     [[nodiscard]] Result<std::uint64_t> reserveSteps();
 
     void advance(EngineEvent event, const std::string& detail = {});
@@ -186,8 +190,9 @@ private:
     std::optional<driver::Rig> rig_;
     std::optional<Pending> pending_;
     Nanoseconds nextTry_{0};
-    std::optional<Error> obstacle_;  ///< why there is no rig, or none that may be lit
-    Monitor* monitor_ = nullptr;     ///< of the job that is on the rig
+    std::optional<Error> obstacle_;      ///< why there is no rig, or none that may be lit
+    Monitor* monitor_ = nullptr;         ///< of the job that is on the rig
+    std::optional<Nanoseconds> lostAt_;  ///< of that job's rig, until it has come back
 
     mutable std::mutex mutex_;  ///< of what is below
     std::condition_variable asked_;

@@ -76,11 +76,11 @@ void Engine::settle(JobRecord& job, const Result<std::string>& outcome, const Mo
 }
 
 /// After a job on it that did not succeed: it may be the reason.
-void Engine::lookAfterRig(JobRecord& job, const Error& why) {
+void Engine::lookAfterRig(JobRecord& job) {
     if (!rig_) return;
     if (const auto there = rig_->status(); !there) {
         if (job.state == JobState::Failed) job.state = JobState::Interrupted;
-        lost(why);
+        lost(there.error());
     } else if (const auto dark = rig_->darken(); !dark) {
         log::warning(dark.error().message);
     }
@@ -94,13 +94,15 @@ void Engine::runPending(const std::stop_token& stop) {
     log::info("job " + std::to_string(job.record.id) + ": " + what);
     advance(EngineEvent::JobBegun);
     Monitor monitor(*this, stop, what);
+    lostAt_.reset();
     const bool atDesk = job.request.kind == JobKind::Recalibrate;
     if (!atDesk) monitor_ = &monitor;
     const Result<std::string> outcome =
         atDesk ? runAtDesk(job.request, monitor) : runOn(job.request, monitor);
+    (void)monitor.interruptions();  // this job's, however it ended
     monitor_ = nullptr;
     settle(job.record, outcome, monitor);
-    if (!atDesk && !outcome) lookAfterRig(job.record, outcome.error());
+    if (!atDesk && !outcome) lookAfterRig(job.record);
     if (job.record.error) log::warning(job.record.error->message);
     if (Result<void> kept = logbook_.endJob(job.record); !kept) log::error(kept.error().message);
     publishCalibrations();

@@ -15,7 +15,9 @@ using namespace std::chrono_literals;
 
 constexpr auto kPause = 100ms;  // between two looks at a clock, a wish and a rig
 
+/// Without patience nobody has waited.
 Error gaveUp(const Error& why, Seconds patience) {
+    if (patience <= Seconds(0)) return why;
     return {
         why.kind, why.message + "; waited " + fixed(patience.count(), 0) + " s", why.deviceStatus};
 }
@@ -37,16 +39,20 @@ void Engine::pause() {
     asked_.wait_for(lock, kPause, [&] { return wish_ == Wish::Cancel; });
 }
 
-/// Outside of a job nobody waits: the owner looks for it again by itself.
+/// Outside of a job nobody waits: the owner looks for it again by itself. Asked again within one
+/// gap, with the reason, when what was found could not be taken up.
 Result<driver::Transport*> Engine::comeBack(const Error& lost) {
-    if (monitor_ == nullptr || !monitor_->mayWait()) return lost;
+    if (monitor_ == nullptr || !monitor_->needsRig()) return lost;
     if (const auto ended = recordingEnded(lost)) return *ended;
-    log::warning(monitor_->job() + ": " + lost.message + "; waiting for the rig");
+    const bool first = !lostAt_;
+    if (first) lostAt_ = world_.clock.now();
+    if (!patientSince(*lostAt_)) return gaveUp(lost, world_.patience);
+    if (first) log::warning(monitor_->job() + ": " + lost.message + "; waiting for the rig");
     port_.close();
     publish([](EngineStatus& status) { status.rig.reset(); });
     hinder(lost);
     advance(EngineEvent::Lost, lost.message);
-    while (monitor_->mayWait()) {
+    while (patientSince(*lostAt_)) {
         world_.alive();
         if (Result<void> on = monitor_->goOn(); !on) return on.error();
         if (world_.clock.now() >= nextTry_) {
@@ -72,16 +78,22 @@ Result<driver::Transport*> Engine::lookAgain() {
             ErrorKind::NoRig,
             "the job is on rig " + wanted + ", refused is " + found + ": plug the first in again"};
     }
-    advance(EngineEvent::Resumed);
-    hinder({});
     return there;
 }
 
+/// The rig has been taken up again, or may light again.
+void Engine::resume() {
+    lostAt_.reset();
+    advance(EngineEvent::Resumed);
+    hinder({});
+}
+
 Result<void> Engine::awaitLight(const Error& why) {
-    if (monitor_ == nullptr || !monitor_->mayWait()) return why;
+    const Nanoseconds since = world_.clock.now();
+    if (monitor_ == nullptr || !patientSince(since)) return why;
     const std::string wanted = explained(static_cast<std::uint16_t>(why.deviceStatus));
     log::warning(monitor_->job() + ": " + wanted);
-    while (monitor_->mayWait()) {
+    while (patientSince(since)) {
         hinder(Error{ErrorKind::Device, wanted, why.deviceStatus});
         advance(EngineEvent::Hindered, wanted);  // also after it was lost meanwhile
         world_.alive();
@@ -89,8 +101,7 @@ Result<void> Engine::awaitLight(const Error& why) {
         const Result<bool> may = mayLight();
         if (!may) return may.error();
         if (*may) {
-            advance(EngineEvent::Resumed);
-            hinder({});
+            resume();
             return {};
         }
         pause();

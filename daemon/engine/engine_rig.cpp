@@ -69,6 +69,7 @@ Result<void> Engine::claim() {
     if (!rig) return rig.error();
     rig_.emplace(std::move(*rig));
     rig_->onLost([this](const Error& lost) { return comeBack(lost); });
+    rig_->onBack([this] { resume(); });
     hinder({});
     publishCalibrations();
     advance(EngineEvent::Claimed);

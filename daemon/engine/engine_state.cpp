@@ -25,8 +25,8 @@ constexpr std::array kTable{
     Row{Finishing, Lost, Offline},      Row{Finishing, FaultSeen, Fault},
     Row{Suspended, Resumed, Running},   Row{Suspended, JobEnded, Idle},
     Row{Suspended, Lost, Interrupted},  Row{Interrupted, Appeared, Connecting},
-    Row{Interrupted, Resumed, Running}, Row{Fault, FaultCleared, Idle},
-    Row{Fault, Lost, Offline},
+    Row{Interrupted, Resumed, Running}, Row{Interrupted, JobEnded, Offline},
+    Row{Fault, FaultCleared, Idle},     Row{Fault, Lost, Offline},
 };
 
 constexpr std::array<std::string_view, 8> kNames{

@@ -26,7 +26,8 @@ Bench JobRun::measuring(const RigProfile& profile) const {
             .attendance = {.alive = [this] { bench_.monitor.alive(); },
                            .suspended =
                                [this](const Error& why) { return bench_.monitor.suspended(why); },
-                           .setback = [this](const Setback& one) { bench_.monitor.setback(one); }},
+                           .setback = [this](const Setback& one) { bench_.monitor.setback(one); },
+                           .captured = [this] { bench_.monitor.captured(); }},
             .outlook = [this](const proc::Progress& now) { bench_.monitor.outlook(now); }};
 }
 

@@ -99,10 +99,4 @@ void Engine::Monitor::keep(driver::Interruption interruption) {
     engine_.tell("interruption", dump(event), true);
 }
 
-bool Engine::Monitor::mayWait() {
-    const Nanoseconds now = engine_.world_.clock.now();
-    if (!gap_) gap_ = now;
-    return !captured_ && Seconds(now - *gap_) < engine_.world_.patience;
-}
-
 }  // namespace gonio::daemon

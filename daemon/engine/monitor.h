@@ -38,16 +38,13 @@ public:
         captured_ = true;
         engine_.advance(EngineEvent::Captured);
     }
-    void alive() override {
-        gap_.reset();
-        engine_.world_.alive();
-    }
+    void alive() override { engine_.world_.alive(); }
     Result<void> suspended(const Error& why) override;
     void setback(const Setback& setback) override;
     [[nodiscard]] const std::vector<driver::Interruption>& interruptions() override;
 
-    /// How long the job may still wait for its rig. A gap goes on until alive() is called.
-    [[nodiscard]] bool mayWait();
+    /// Whether there are frames to be taken yet: only then the job waits for a rig that was lost.
+    [[nodiscard]] bool needsRig() const { return !captured_; }
     [[nodiscard]] const std::string& job() const { return job_; }
 
     /// How a job that did not succeed has ended.
@@ -83,8 +80,7 @@ private:
     bool ended_ = false;
     std::optional<proc::Progress> outlook_;
     std::vector<driver::Interruption> interruptions_;
-    bool captured_ = false;           ///< what is left needs no rig
-    std::optional<Nanoseconds> gap_;  ///< when the one at hand began
+    bool captured_ = false;  ///< what is left needs no rig
 };
 
 }  // namespace gonio::daemon

@@ -16,11 +16,7 @@ Result<Captured> captureReference(const JobRun& run,
     bench.glare = view.lens.glare;
     bench.corrections = view.corrections;
     run.bench().monitor.begin(placementSteps(bench));
-    Result<Captured> captured = measurePlacement(bench, view.lens.fit.map, plan, darkFrames);
-    if (!captured) return captured;
-    if (Result<void> dark = run.bench().rig.darken(); !dark) return dark.error();
-    run.bench().monitor.captured();
-    return captured;
+    return measurePlacement(bench, view.lens.fit.map, plan, darkFrames);
 }
 
 Result<ReferenceRecord> storedReference(const JobRun& run,

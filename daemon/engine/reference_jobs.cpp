@@ -50,8 +50,6 @@ Result<Json> calibrateMirror(const JobRun& run) {
     Result<LensRecord> lens =
         measureLens(bench, [&](const proc::Wedge& wedge) { return placeMirror(run, wedge); });
     if (!lens) return lens.error();
-    if (Result<void> dark = run.bench().rig.darken(); !dark) return dark.error();
-    run.bench().monitor.captured();
     lens->dateUtc = run.bench().utcNow();
     const std::optional<double> warmth = run.celsius();  // of a link that only this thread reads
     const auto kept = run.whileAlive([&] {

@@ -60,7 +60,6 @@ Result<Json> calibrateSensor(const JobRun& run) {
     run.bench().monitor.begin(sensorSteps());
     Result<SensorRecord> sensor = measureSensor(run.measuring(plain));
     if (!sensor) return sensor.error();
-    run.bench().monitor.captured();
     sensor->dateUtc = run.bench().utcNow();
     const auto kept = keep(run,
                            {.kind = "sensor",
@@ -85,7 +84,6 @@ Result<Json> calibrateLeds(const JobRun& run) {
     run.bench().monitor.begin(warmUpSteps());
     const Result<proc::LedMonitor> leds = measureWarmUp(run.measuring());
     if (!leds) return leds.error();
-    run.bench().monitor.captured();
     const auto kept = keep(run, {.kind = "leds", .celsius = run.celsius()}, encodeLeds(*leds));
     if (!kept) return kept.error();
     Json document = documentOf(run, *kept);
@@ -104,7 +102,6 @@ Result<Json> calibrateDark(const JobRun& run) {
     const Result<std::vector<proc::DarkFrame>> darks = measureDarks(bench);
     if (!darks) return darks.error();
     if (Result<void> dark = checkDark(run, darks->back()); !dark) return dark.error();
-    run.bench().monitor.captured();
     const std::optional<double> warmth = run.sensorCelsius();
     const auto kept = keep(run, {.kind = "dark", .celsius = warmth}, run.whileAlive([&] {
         return encodeDarks(*darks);

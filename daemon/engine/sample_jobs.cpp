@@ -7,6 +7,7 @@
 #include "daemon/planned_run.h"
 #include "daemon/sample_quality.h"
 #include "daemon/stored_darks.h"
+#include "daemon/then_dark.h"
 #include "proc/core/log.h"
 #include "proc/formats/file_degrees.h"
 #include "proc/formats/gonio_exr.h"
@@ -140,7 +141,6 @@ Result<Taken> take(const JobRun& run, const Loaded& loaded, const RigReferences&
     run.bench().monitor.planned(**plan);
     Result<Captured> captured = planned.capture();
     if (!captured) return captured.error();
-    run.bench().monitor.captured();
     taken.captured = std::move(*captured);
     taken.achieved = {{"seconds", run.onRig().count()}};
     taken.achieved.update(toJson(planned.achieved(taken.captured)));
@@ -157,10 +157,8 @@ Result<Json> plan(const JobRun& run) {
         referencesOf(loaded->records, loaded->certified, run.profile());
     PlannedRun planned(bench, references, run.request().goal.plan());
     run.bench().monitor.begin(planned.steps());
-    const Result<const proc::Plan*> plan = planned.plan();
+    const Result<const proc::Plan*> plan = thenDark(bench, planned.plan());
     if (!plan) return plan.error();
-    if (Result<void> dark = run.bench().rig.darken(); !dark) return dark.error();
-    run.bench().monitor.captured();
     Json document{
         {"schema", "gonio/plan/1"}, {"rig", run.serial()}, {"goal", run.request().goal.name()}};
     document.update(toJson(**plan));

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
+#include <utility>
 
 #include "daemon/sequencer.h"
 #include "proc/models/spec.h"
@@ -54,13 +56,33 @@ public:
                                          frames[shot / 4].push_back(std::move(frame));
                                          return {};
                                      },
+                                     .done = [&](std::size_t shot) -> Result<void> {
+                                         if (done) done(shot);
+                                         return {};
+                                     },
                                      .begin = [&](std::size_t shot) -> Result<void> {
                                          frames[shot / 4].clear();
                                          boots[shot / 4].clear();
                                          return {};
                                      }});
         odd = sequencer.oddFrames();
+        breaks = sequencer.breaks();
         return taken;
+    }
+    /// The rig is only kept alive until it has another boot.
+    void awaitReboot() {
+        const std::uint32_t boot = rig->bootId();
+        for (int looks = 0; looks < 400 && rig->bootId() == boot; ++looks) {
+            usb().advanceTo(usb().now() + 200ms);
+            EXPECT_TRUE(rig->keepAlive());
+        }
+        EXPECT_NE(rig->bootId(), boot);
+    }
+    /// By frames that the rig has made since it booted: this long at least.
+    [[nodiscard]] Seconds exposed() {
+        const auto stats = rig->link().stats();
+        EXPECT_TRUE(stats) << stats.error().message;
+        return (stats ? stats->framesMade : 0) * Seconds(rig->identify().framePeriod);
     }
     [[nodiscard]] std::vector<std::string> causes() const {
         std::vector<std::string> names;
@@ -74,7 +96,8 @@ public:
     std::optional<driver::Rig> rig;  // ends before its doors
     std::uint64_t nextPlanStep = 1;
     std::vector<Setback> setbacks;
-    int clearings = 0;
+    int clearings = 0, breaks = 0;
+    std::function<void(std::size_t)> done;  ///< called after each shot
     Attendance attendance{.suspended = [this](const Error& why) { return awaitLight(why); },
                           .setback = [this](const Setback& one) { setbacks.push_back(one); }};
     std::array<std::vector<Frame>, 2> frames;
@@ -82,6 +105,7 @@ public:
     std::vector<OddFrame> odd;
 
 private:
+    [[nodiscard]] sim::FaultyUsb& usb() { return (doors.empty() ? first : *doors.back()).usb(); }
     Result<driver::Transport*> comeBack(const Error& lost) {
         for (int looks = 0; looks < 100; ++looks) {
             first.usb().advanceTo(first.usb().now() + 500ms);
@@ -169,6 +193,42 @@ TEST(SetbacksOnSim, CableBumpIsNoneOfTheBracketsBusiness) {
     ASSERT_EQ(interruptions.size(), 1U);
     EXPECT_TRUE(interruptions.front().sameBoot);
     expectSame(bed, undisturbed);
+}
+
+/// The rig boots beside the measurement, after so many shots of two times four.
+void takeWithABootAfter(std::size_t shot, Bed& bed) {
+    bed.done = [&bed, shot, done = false](std::size_t now) mutable {
+        if (now == shot && !std::exchange(done, true)) bed.awaitReboot();
+    };
+    Bed undisturbed;
+    ASSERT_TRUE(undisturbed.take());
+    const auto taken = bed.take();
+    ASSERT_TRUE(taken) << taken.error().message;
+    expectSame(bed, undisturbed);
+    EXPECT_EQ(bed.breaks, 1);
+    EXPECT_GE(bed.exposed(), bed.profile.warmUp) << "its LED was lit before";
+}
+
+TEST(SetbacksOnSim, PowerLostBesideABracketHasItTakenAgain) {
+    Bed bed("at 30s unplug\nat 31s plug rebooted");
+    takeWithABootAfter(1, bed);
+    EXPECT_EQ(bed.causes(), std::vector<std::string>{"new-boot"});
+}
+
+TEST(SetbacksOnSim, PowerLostBetweenTwoBracketsCostsNoneOfThem) {
+    Bed bed("at 30s unplug\nat 31s plug rebooted");
+    takeWithABootAfter(3, bed);
+    EXPECT_TRUE(bed.setbacks.empty()) << bed.setbacks.front().message;
+    EXPECT_NE(bed.boots[0].front(), bed.boots[1].front());
+}
+
+TEST(SetbacksOnSim, LedThatWasDarkForAWhileIsWarmAgainBeforeItsBracket) {
+    Bed undisturbed, bed("on frame 3 open interlock for 2s");
+    ASSERT_TRUE(undisturbed.take());
+    ASSERT_TRUE(bed.take());
+    EXPECT_EQ(bed.breaks, 1);
+    EXPECT_EQ(undisturbed.breaks, 0);
+    EXPECT_GE(bed.exposed(), undisturbed.exposed() + bed.profile.warmUp);
 }
 
 TEST(SetbacksOnSim, DarkFramesWaitForTheInterlockToo) {

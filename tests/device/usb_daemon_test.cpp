@@ -285,7 +285,7 @@ TEST_F(Lab, UnpluggedInTheMiddleTheJobIsInterruptedAndTheRigIsFoundAgain) {
     const Json job = ask({"jobs"})["jobs"][0];
     EXPECT_EQ(job["state"], "interrupted") << job;
     const Json after = status();
-    EXPECT_EQ(after["rig"]["state"], "interrupted") << after;
+    EXPECT_EQ(after["rig"]["state"], "offline") << after;
     EXPECT_EQ(gonio({"calibrate", "mirror"}).exitCode, 3);
     rig.plug();
     awaitState("idle");

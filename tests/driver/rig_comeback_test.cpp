@@ -165,6 +165,31 @@ TEST_F(RigComeback, AnotherBootBetweenCapturesIsToldByTheNextOneOnce) {
     }
 }
 
+TEST_F(RigComeback, AnotherBootThatIsTakenIsToldByNoCapture) {
+    broken = [&] { device.powerLost(); };
+    EXPECT_FALSE(rig->takeReboot());
+    breakAfter(0);
+    EXPECT_TRUE(rig->keepAlive());
+    const auto reboot = rig->takeReboot();
+    ASSERT_TRUE(reboot);
+    EXPECT_TRUE(mentions(*reboot, "redo the bracket")) << reboot->message;
+    EXPECT_FALSE(rig->takeReboot());
+    expectUndisturbed(rig->capture(kRequest), kRequest);
+}
+
+TEST_F(RigComeback, AnotherBootThatACaptureHasToldIsThereToBeTaken) {
+    broken = [&] { device.powerLost(); };
+    breakInTheStream();
+    ASSERT_FALSE(rig->capture(kRequest));
+    EXPECT_TRUE(rig->takeReboot());
+    expectUndisturbed(rig->capture(kRequest), kRequest);
+    EXPECT_FALSE(rig->takeReboot());
+    breakAfter(0);
+    EXPECT_TRUE(rig->keepAlive());
+    EXPECT_TRUE(rig->configure(kWindow));
+    EXPECT_FALSE(rig->takeReboot()) << "what is configured anew is taken anew";
+}
+
 TEST(RigComebackAnywhere, AnotherBootIsToldThoughItsOwnerGaveUpOnTheWay) {
     for (int cut = 0; cut < 20; ++cut) {
         SCOPED_TRACE("the second cable breaks at call " + std::to_string(cut));
@@ -222,6 +247,23 @@ TEST_F(RigComeback, ARigThatIsLostAgainWhileItComesBackIsAwaitedAgain) {
     expectUndisturbed(capture, kRequest);
     EXPECT_EQ(plugs.losses.size(), 21U);
     EXPECT_EQ(plugs.touches(), 0);
+}
+
+TEST_F(RigComeback, ItsOwnerAloneSaysHowOftenItIsTriedAndHearsWhenItIsBack) {
+    constexpr std::size_t kTries = 2000;
+    plugs.onPlug = [&](LooseCable& cable) {
+        if (plugs.losses.size() < kTries) cable.breaksAt = 0;
+    };
+    std::size_t backs = 0, lossesBefore = 0;
+    rig->onBack([&] {
+        ++backs;
+        lossesBefore = plugs.losses.size();
+    });
+    breakAfter(30);
+    expectUndisturbed(rig->capture(kRequest), kRequest);
+    EXPECT_EQ(backs, 1U);
+    EXPECT_EQ(lossesBefore, kTries) << "not before it was taken up";
+    EXPECT_EQ(plugs.losses.size(), kTries);
 }
 
 TEST_F(RigComeback, WhenItsOwnerGivesUpTheCallEndsWithItsReason) {

@@ -71,7 +71,7 @@ TEST(EngineState, LostRigIsClaimedAgainBeforeItIsIdle) {
     EXPECT_EQ(next(Interrupted, Appeared), Connecting);
     EXPECT_EQ(next(Connecting, Claimed), Idle);
     EXPECT_FALSE(next(Interrupted, Claimed));
-    EXPECT_FALSE(next(Interrupted, JobEnded)) << "a job's end does not bring a rig back";
+    EXPECT_EQ(next(Interrupted, JobEnded), Offline) << "a job's end does not bring a rig back";
 }
 
 TEST(EngineState, JobGoesOnWhenItsRigIsBackOrMayLightAgain) {

@@ -107,6 +107,10 @@ TEST_F(JobThatGoesOn, JobThatWaitsForItsRigCanBeCancelled) {
     ASSERT_TRUE(engine->cancel(id));
     watcher.until("job", {{"job", id}, {"state", "cancelled"}});
     EXPECT_NE(kept(id).error->message.find("cancelled"), std::string::npos);
+    const EngineStatus after = engine->status();
+    EXPECT_EQ(after.state, EngineState::Offline) << "without a job the rig is merely not there";
+    EXPECT_NE(after.obstacle.find("the cable was pulled"), std::string::npos) << after.obstacle;
+    EXPECT_EQ(after.obstacle.find("cancelled"), std::string::npos) << after.obstacle;
 }
 
 TEST_F(JobThatGoesOn, RigThatCannotBeOpenedYetIsTriedAgain) {
@@ -162,6 +166,117 @@ TEST_F(JobThatGoesOn, SuspendedJobCanBeCancelledAndTheFaultIsLeft) {
     watcher.until("job", {{"job", id}, {"state", "cancelled"}});
     engine.await(EngineState::Fault);
     EXPECT_FALSE(port.cable.lit());
+}
+
+TEST_F(JobThatGoesOn, RigLostAfterTheLastFrameIsNotWaitedFor) {
+    RunningEngine engine(folder.path(), port, 60s);
+    engine.await(EngineState::Idle);
+    Watcher watcher(*engine);
+    port.cable.pullAtDarkeningAfter(2);  // the second is lit, and so are all others
+    const auto id = submit(engine, kCheck);
+    for (const auto& event : watcher.until("job", {{"job", id}, {"state", "done"}}))
+        EXPECT_EQ(event.data.find("\"interrupted\""), std::string::npos) << event.data;
+    ASSERT_TRUE(port.cable.pulled());
+    expectSame(documentOf(id), undisturbed());
+    engine.await(EngineState::Offline);
+}
+
+/// A job that asks a person for something, on a rig whose cable is bumped meanwhile.
+class JobThatAsks : public JobThatGoesOn {
+protected:
+    JobThatAsks() { port.mirrorPlacesItself = false; }
+    void bump(RunningEngine& engine, Watcher& watcher) {
+        port.cable.pull();
+        watcher.until("rig", {{"state", "interrupted"}});
+        port.cable.plug();
+        engine.clock().turn(500ms);
+        watcher.until("rig", {{"state", "running"}});
+        ASSERT_TRUE(engine.awaitTurns(4));
+    }
+};
+
+TEST_F(JobThatAsks, EachGapHasItsOwnTime) {
+    RunningEngine engine(folder.path(), port, 60s);
+    engine.await(EngineState::Idle);
+    Watcher watcher(*engine);
+    const auto id = submit(engine);
+    watcher.until("operator");
+    bump(engine, watcher);
+    engine.clock().turn(70s);  // the person takes a while
+    ASSERT_TRUE(engine.awaitTurns(4));
+    port.cable.pull();
+    watcher.until("rig", {{"state", "interrupted"}});
+    engine.clock().turn(50s);
+    ASSERT_TRUE(engine.awaitTurns(2));
+    EXPECT_EQ(engine->status().state, EngineState::Interrupted);
+    engine.clock().turn(11s);
+    watcher.until("job", {{"job", id}, {"state", "interrupted"}});
+    EXPECT_NE(kept(id).error->message.find("waited 60 s"), std::string::npos)
+        << kept(id).error->message;
+}
+
+TEST_F(JobThatAsks, GapIsBookedOnTheJobThatSurvivedItHoweverThatEnds) {
+    RunningEngine engine(folder.path(), port, 60s);
+    engine.await(EngineState::Idle);
+    Watcher watcher(*engine);
+    const auto id = submit(engine);
+    watcher.until("operator");
+    bump(engine, watcher);
+    ASSERT_TRUE(engine->cancel(id));
+    watcher.until("interruption", {{"job", id}, {"same_boot", true}});
+    watcher.until("job", {{"job", id}, {"state", "cancelled"}});
+    engine.await(EngineState::Idle);
+    const auto next = submit(engine);
+    for (const auto& event : watcher.until("operator", {{"job", next}}))
+        EXPECT_NE(event.type, "interruption") << event.data;
+    EXPECT_EQ(engine->status().job->interruptions, 0);
+}
+
+TEST_F(JobThatGoesOn, RigThatIsThereAndCannotBeClaimedIsWaitedForAsOneThatIsGone) {
+    RunningEngine engine(folder.path(), port, 550s);
+    engine.await(EngineState::Idle);
+    Watcher watcher(*engine);
+    const auto id = submit(engine, kCheck);
+    ASSERT_TRUE(waitUntil([&] { return port.cable.lit(); }));
+    port.cable.pull();
+    watcher.until("rig", {{"state", "interrupted"}});
+    port.cable.mute(true);
+    port.cable.plug();
+    const std::uint64_t told = engine->events().newest();
+    const int opened = port.opens();
+    for (int looks = 0; looks < 5; ++looks) {
+        engine.clock().turn(500ms);
+        ASSERT_TRUE(waitUntil([&] { return port.opens() > opened + looks; }));
+    }
+    EXPECT_EQ(engine->status().state, EngineState::Interrupted);
+    EXPECT_EQ(engine->events().newest(), told) << "nothing has changed";
+    engine.clock().turn(550s);
+    watcher.until("job", {{"job", id}, {"state", "interrupted"}});
+    EXPECT_NE(kept(id).error->message.find("waited 550 s"), std::string::npos)
+        << kept(id).error->message;
+}
+
+TEST_F(JobThatGoesOn, RigThatCanBeClaimedAtLastGoesOn) {
+    RunningEngine engine(folder.path(), port, 600s);
+    engine.await(EngineState::Idle);
+    Watcher watcher(*engine);
+    const auto id = submit(engine, kCheck);
+    ASSERT_TRUE(waitUntil([&] { return port.cable.lit(); }));
+    port.cable.pull();
+    watcher.until("rig", {{"state", "interrupted"}});
+    port.cable.mute(true);
+    port.cable.plug();
+    const int opened = port.opens();
+    engine.clock().turn(500ms);
+    ASSERT_TRUE(waitUntil([&] { return port.opens() > opened; }));
+    EXPECT_TRUE(waitUntil([&] {
+        return engine->status().obstacle.find("does not answer") != std::string::npos;
+    })) << engine->status().obstacle;
+    port.cable.mute(false);
+    engine.clock().turn(500ms);
+    watcher.until("rig", {{"state", "running"}});
+    watcher.until("job", {{"job", id}, {"state", "done"}});
+    EXPECT_EQ(documentOf(id)["interruptions"].size(), 1U);
 }
 
 }  // namespace

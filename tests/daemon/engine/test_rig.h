@@ -23,6 +23,7 @@ public:
     [[nodiscard]] driver::DeviceStrings strings() const override { return door_.strings(); }
     [[nodiscard]] const Clock& clock() const override { return door_.clock(); }
     Result<void> write(const driver::Report& report) override {
+        watchFor(report);
         if (Result<void> there = pass(); !there) return there;
         return door_.write(report);
     }
@@ -36,6 +37,7 @@ public:
     }
     [[nodiscard]] Result<driver::Report> getFeature(std::uint8_t id) override {
         if (Result<void> there = pass(); !there) return there.error();
+        if (mute_) return Error{ErrorKind::Device, "the rig does not answer"};
         return door_.getFeature(id);
     }
     [[nodiscard]] Result<std::optional<driver::Report>> readInput(Nanoseconds wait) override {
@@ -65,6 +67,10 @@ public:
     void pull() { pulled_ = true; }
     void plug() { pulled_ = false; }
     [[nodiscard]] bool pulled() const { return pulled_; }
+    /// Is pulled when the LEDs are to go dark, after so many ARMs in all.
+    void pullAtDarkeningAfter(int arms) { pullAfter_ = arms; }
+    /// A rig that is there and cannot be claimed: no Feature report is answered.
+    void mute(bool on) { mute_ = on; }
     void setInterlock(std::uint8_t bits) { interlock_ = bits; }
     /// Nothing moves from the next call on, until letGo().
     void hold() {
@@ -98,6 +104,17 @@ public:
     [[nodiscard]] sim::Device& device() { return door_.device(); }
 
 private:
+    void watchFor(const driver::Report& report) {
+        const auto command = driver::decodeCommand(report);
+        if (!command) return;
+        if (command->op == driver::Op::Arm) ++armed_;
+        const bool darkens =
+            command->op == driver::Op::SetLed && command->arguments == driver::Arguments{};
+        const int after = pullAfter_;
+        if (!darkens || after == 0 || armed_ < after) return;
+        pullAfter_ = 0;
+        pull();
+    }
     Result<void> pass() {
         std::unique_lock lock(mutex_);
         changed_.wait_for(lock, kPatience, [&] { return !held_; });  // else a failed test hangs
@@ -120,8 +137,8 @@ private:
     }
 
     sim::InProcessDoor door_{{}};
-    std::atomic<bool> pulled_{false}, lit_{false}, wasLit_{false};
-    std::atomic<int> interlock_{-1};
+    std::atomic<bool> pulled_{false}, mute_{false}, lit_{false}, wasLit_{false};
+    std::atomic<int> interlock_{-1}, armed_{0}, pullAfter_{0};
     bool wasPulled_ = false;
     mutable std::mutex mutex_;  // of what follows
     std::condition_variable changed_;
