@@ -15,7 +15,8 @@ namespace gonio::driver {
 
 class Recorder {
 public:
-    /// A recording that is there already is continued; a File error for any other file.
+    /// A recording that is there already is continued, without a last record that a power cut has
+    /// torn (a warning); an empty file is begun. A File error for any other file, which stays.
     [[nodiscard]] static Result<std::unique_ptr<Recorder>> open(const std::filesystem::path& file);
 
     /// One that failed as the one before it did is not told again.

@@ -44,19 +44,17 @@ sigset_t blockSignals() {
     return signals;
 }
 
-Result<std::unique_ptr<RigPort>> openPort(const std::string& rig,
+Result<std::unique_ptr<RigPort>> openPort(const RigChoice& choice,
                                           const std::filesystem::path& store,
                                           const RigProfile& profile) {
-    const Result<RigChoice> choice = parseRigChoice(rig);
-    if (!choice) return choice.error();
-    if (!choice->replay.empty()) {
-        auto replay = driver::Replay::open(choice->replay);
+    if (!choice.replay.empty()) {
+        auto replay = driver::Replay::open(choice.replay);
         if (!replay) return replay.error();
         return std::unique_ptr<RigPort>(std::make_unique<ReplayPort>(std::move(*replay)));
     }
-    if (!choice->simulated) {
+    if (!choice.simulated) {
         return std::unique_ptr<RigPort>(
-            std::make_unique<UsbPort>(driver::UsbSelection{.serial = choice->serial}));
+            std::make_unique<UsbPort>(driver::UsbSelection{.serial = choice.serial}));
     }
     Result<std::unique_ptr<SimPort>> sim = SimPort::open(store, profile.cameraUsb);
     if (!sim) return sim.error();
@@ -90,7 +88,10 @@ Result<void> serve(const DaemonOptions& options) {
     Result<RigProfile> profile =
         readProfile(options.profile.empty() ? defaultProfile() : options.profile);
     if (!profile) return profile.error();
-    Result<std::unique_ptr<RigPort>> port = openPort(options.rig, store, *profile);
+    const Result<RigChoice> choice = parseRigChoice(options.rig);
+    if (!choice) return choice.error();
+    if (Result<void> good = checkRecord(*choice, options.record); !good) return good;
+    Result<std::unique_ptr<RigPort>> port = openPort(*choice, store, *profile);
     if (port && !options.record.empty()) port = recorded(std::move(*port), options.record);
     if (!port) return port.error();
     const driver::SteadyClock clock;

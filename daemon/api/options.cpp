@@ -54,6 +54,17 @@ Result<RigChoice> parseRigChoice(const std::string& rig) {
                      : "--rig '" + rig + "': wanted sim, usb, usb:SERIAL or replay:FILE"};
 }
 
+Result<void> checkRecord(const RigChoice& rig, const std::filesystem::path& record) {
+    std::error_code missing;
+    if (rig.replay.empty() || record.empty()) return {};
+    const bool same =
+        rig.replay == record || std::filesystem::equivalent(rig.replay, record, missing);
+    if (!same) return {};
+    return Error{ErrorKind::Usage,
+                 "--record " + record.string() +
+                     ": this recording is being played; record into another file"};
+}
+
 Result<SocketAccess> parseSocketMode(const std::string& mode) {
     if (mode.empty() || mode == "0600") return SocketAccess::User;
     if (mode == "0660") return SocketAccess::Group;

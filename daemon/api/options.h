@@ -39,6 +39,9 @@ struct RigChoice {
 };
 [[nodiscard]] Result<RigChoice> parseRigChoice(const std::string& rig);
 
+/// Usage error when the recording that is played would be recorded into.
+[[nodiscard]] Result<void> checkRecord(const RigChoice& rig, const std::filesystem::path& record);
+
 /// Who may connect: the daemon's user, or its group too. Usage error for anything else.
 [[nodiscard]] Result<SocketAccess> parseSocketMode(const std::string& mode);
 

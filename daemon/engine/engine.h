@@ -150,6 +150,7 @@ private:
     // A job that goes on (engine_recovery.cpp).
     [[nodiscard]] Result<driver::Transport*> comeBack(const Error& lost);
     [[nodiscard]] Result<driver::Transport*> lookAgain();
+    [[nodiscard]] std::optional<Error> recordingEnded(const Error& lost) const;
     void resume();
     [[nodiscard]] bool patientSince(Nanoseconds begin) const {
         return Seconds(world_.clock.now() - begin) < world_.patience;

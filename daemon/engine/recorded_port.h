@@ -29,6 +29,7 @@ public:
         transport_.reset();
         inner_->close();
     }
+    [[nodiscard]] const driver::Replay* replay() const override { return inner_->replay(); }
     [[nodiscard]] std::string placed() const override { return inner_->placed(); }
     Result<bool> placeMirror(const proc::Wedge& wedge) override {
         return inner_->placeMirror(wedge);

@@ -13,6 +13,10 @@
 #include "proc/optics/mirror.h"
 #include "proc/table/sample_set.h"
 
+namespace gonio::driver {
+class Replay;
+}
+
 namespace gonio::daemon {
 
 class SimPort;
@@ -37,8 +41,9 @@ public:
     /// again.
     [[nodiscard]] virtual Result<driver::Transport*> open() = 0;
     virtual void close() = 0;
-    /// The session that this opening must be claimed with; empty: any.
-    [[nodiscard]] virtual std::optional<std::uint64_t> session() const { return {}; }
+    /// The recording that is played in a rig's place; null: there is a rig, or may be one. For the
+    /// thread that owns the rig.
+    [[nodiscard]] virtual const driver::Replay* replay() const = 0;
 
     /// What lies under the rig: "white", "mirror", a file, ...; empty: only a person knows.
     [[nodiscard]] virtual std::string placed() const = 0;

@@ -42,6 +42,7 @@ public:
     [[nodiscard]] Result<std::vector<RigListing>> list() override;
     [[nodiscard]] Result<driver::Transport*> open() override;
     void close() override { door_.reset(); }
+    [[nodiscard]] const driver::Replay* replay() const override { return nullptr; }
     [[nodiscard]] std::string placed() const override { return state_.placed; }
     Result<bool> placeMirror(const proc::Wedge& wedge) override;
     void describe(proc::SampleInfo& info) const override;

@@ -261,21 +261,6 @@ TEST_F(UsbRigTest, OfTwoRigsTheSerialNumberSaysWhich) {
     EXPECT_EQ(third.error().kind, ErrorKind::NoRig);
 }
 
-TEST_F(UsbFaults, APortThatCouldNotBeResetInTimeIsResetAfterwards) {
-    mock.live().with([](sim::FaultyUsb& usb) { usb.cause(sim::FaultKind::HangUntilReset); });
-    EXPECT_FALSE(transport->resetStream());  // the kernel waits on
-    (void)transport->resetPort();
-    rig.reset();
-    transport.reset();
-    EXPECT_TRUE(test::waitUntil([&] {
-        const bool hung = mock.live().with([](sim::FaultyUsb& usb) { return usb.hung(); });
-        return !hung && driver::usbLedger().streams == 0;
-    }));
-    transport = opened();
-    ASSERT_TRUE(transport);
-    EXPECT_TRUE(Rig::open(*transport, kSession));
-}
-
 TEST_F(UsbRigTest, ARigThatIsSilentWhenItIsOpenedGetsItsPortReset) {
     mock.live().with([](sim::FaultyUsb& usb) { usb.cause(sim::FaultKind::HangUntilReset); });
     const auto silent = driver::openUsb();

@@ -79,6 +79,23 @@ TEST(RigChoice, IsTheSimulatedOneAnyOnUsbOrOneOfThem) {
     EXPECT_TRUE(parseRigChoice("usb")->replay.empty());
 }
 
+TEST(RigChoice, RecordingThatIsPlayedIsNotRecordedInto) {
+    const test::TempFolder folder;
+    const auto played = folder / "played";
+    std::ofstream(played.string()) << "r";
+    std::filesystem::create_symlink(played, folder / "link");
+    const RigChoice replay{.replay = played};
+    for (const auto& same : {played, folder / "link", folder / "." / "played"}) {
+        const auto refused = checkRecord(replay, same);
+        ASSERT_FALSE(refused) << same;
+        EXPECT_EQ(refused.error().kind, ErrorKind::Usage);
+        EXPECT_NE(refused.error().message.find(same.string()), std::string::npos);
+    }
+    EXPECT_TRUE(checkRecord(replay, folder / "another"));
+    EXPECT_TRUE(checkRecord(replay, {}));
+    EXPECT_TRUE(checkRecord(RigChoice{}, played));
+}
+
 TEST(RigChoice, AnythingElseIsAUsageErrorThatSaysWhatIsWanted) {
     for (const char* rig : {"", "usb:", "usb3", "replay:", "SIM", "sim "}) {
         const auto choice = parseRigChoice(rig);
