@@ -28,6 +28,8 @@ public:
     /// The next opening, as it went: a transport, or why there was none. One at a time; it must not
     /// outlive this.
     [[nodiscard]] Result<std::unique_ptr<Transport>> openRig();
+    /// Nothing is left of it: no rig is there any more.
+    [[nodiscard]] bool over() const { return !ahead_; }
     /// The session that the host claimed then, in the opening that openRig() gives next.
     [[nodiscard]] std::optional<std::uint64_t> nextSession() const;
     /// Of the first rig; empty when none was ever there.

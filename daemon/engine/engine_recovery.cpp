@@ -14,11 +14,20 @@ using namespace std::chrono_literals;
 
 constexpr auto kPause = 100ms;  // between two looks at a clock, a wish and a rig
 
+Error given(const Error& up, const std::string& because) {
+    return {up.kind, up.message + "; " + because, up.deviceStatus};
+}
+
 /// Without patience nobody has waited.
 Error gaveUp(const Error& why, Seconds patience) {
     if (patience <= Seconds(0)) return why;
-    return {
-        why.kind, why.message + "; waited " + fixed(patience.count(), 0) + " s", why.deviceStatus};
+    return given(why, "waited " + fixed(patience.count(), 0) + " s");
+}
+
+/// RigPort::open().
+bool mayPass(const Error& obstacle) {
+    return obstacle.kind == ErrorKind::NoRig || obstacle.kind == ErrorKind::Busy ||
+           obstacle.kind == ErrorKind::Device;
 }
 
 }  // namespace
@@ -48,6 +57,7 @@ Result<driver::Transport*> Engine::comeBack(const Error& lost) {
             Result<driver::Transport*> there = lookAgain();
             if (there) return there;
             hinder(there.error());
+            if (!mayPass(there.error())) return given(lost, there.error().message);
         }
         pause();
     }

@@ -24,12 +24,16 @@ public:
     [[nodiscard]] Result<driver::Transport*> open() override {
         session_ = replay_->nextSession();
         Result<std::unique_ptr<driver::Transport>> opened = replay_->openRig();
+        if (!opened && replay_->over()) return Error{ErrorKind::File, opened.error().message};
         if (!opened) return opened.error();
         transport_ = std::move(*opened);
         return transport_.get();
     }
     void close() override { transport_.reset(); }
     [[nodiscard]] std::optional<std::uint64_t> session() const override { return session_; }
+    [[nodiscard]] std::string onlyForJobs() const override {
+        return "a recording answers only what was asked then";
+    }
     [[nodiscard]] std::string placed() const override { return {}; }
     Result<bool> placeMirror(const proc::Wedge& /*wedge*/) override { return false; }
     void describe(proc::SampleInfo& info) const override { info.extra["rig"] = "replayed"; }
