@@ -119,8 +119,9 @@ void Recorder::add(const RecordedCall& call) {
     file_.close();
     std::error_code ignored;
     fs::resize_file(path_, bytes_, ignored);  // without the half of this record
-    log::warning("record to " + path_.string() + ": " + why + "; the record ends here at " +
-                 std::to_string(bytes_) + " bytes, the rig goes on");
+    ending_ = "record to " + path_.string() + ": " + why + "; the record ends here at " +
+              std::to_string(bytes_) + " bytes, the rig goes on";
+    log::warning(ending_);
 }
 
 RecordingTransport::RecordingTransport(Transport& inner, Recorder& recorder)

@@ -23,6 +23,8 @@ public:
     void add(const RecordedCall& call);
     /// It is written no more.
     [[nodiscard]] bool ended() const { return !file_.is_open(); }
+    /// Why, where it has ended before its time.
+    [[nodiscard]] const std::string& ending() const { return ending_; }
 
 private:
     explicit Recorder(std::filesystem::path path) : path_(std::move(path)) {}
@@ -33,6 +35,7 @@ private:
     std::uint64_t bytes_ = 0;  ///< up to the last whole record
     std::vector<std::uint8_t> buffer_;
     std::string refusal_;  ///< of the last opening
+    std::string ending_;
 };
 
 /// All that passes through it is recorded. Both are borrowed.

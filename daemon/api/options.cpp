@@ -18,6 +18,7 @@ Result<DaemonOptions> readDaemonOptions(const std::filesystem::path& file) {
                           .socket = keys.textOr("socket", ""),
                           .profile = keys.textOr("profile", ""),
                           .record = keys.textOr("record", ""),
+                          .faults = keys.textOr("faults", ""),
                           .socketMode = keys.textOr("socket_mode", "")};
     constexpr double kNotTold = -1;
     const double comeback = keys.notNegativeOr("comeback_seconds", kNotTold);
@@ -33,6 +34,7 @@ DaemonOptions overlaid(DaemonOptions first, const DaemonOptions& second) {
     if (first.socket.empty()) first.socket = second.socket;
     if (first.profile.empty()) first.profile = second.profile;
     if (first.record.empty()) first.record = second.record;
+    if (first.faults.empty()) first.faults = second.faults;
     if (first.socketMode.empty()) first.socketMode = second.socketMode;
     if (!first.comebackSeconds) first.comebackSeconds = second.comebackSeconds;
     return first;

@@ -70,6 +70,7 @@ Result<void> Engine::claim() {
     rig_.emplace(std::move(*rig));
     rig_->onLost([this](const Error& lost) { return comeBack(lost); });
     rig_->onBack([this] { resume(); });
+    publish([&](EngineStatus& status) { status.info = rig_->identify(); });
     hinder({});
     publishCalibrations();
     advance(EngineEvent::Claimed);

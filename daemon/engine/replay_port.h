@@ -30,6 +30,9 @@ public:
     }
     void close() override { transport_.reset(); }
     [[nodiscard]] const driver::Replay* replay() const override { return replay_.get(); }
+    [[nodiscard]] std::string onlyForJobs() const override {
+        return "a recording answers only what was asked then";
+    }
     [[nodiscard]] std::string placed() const override { return {}; }
     Result<bool> placeMirror(const proc::Wedge& /*wedge*/) override { return false; }
     void describe(proc::SampleInfo& info) const override { info.extra["rig"] = "replayed"; }

@@ -48,6 +48,8 @@ public:
     void describe(proc::SampleInfo& info) const override;
     [[nodiscard]] SimPort* simulated() override { return this; }
 
+    /// What goes wrong from the next opening on.
+    void play(sim::FaultScript script) { faults_ = std::move(script); }
     /// True: it is another rig from now on, and has to be opened anew. Whatever is wrong with what
     /// is to be placed is said at once, and the rig stays as it was.
     Result<bool> place(const PlaceRequest& request);
@@ -60,7 +62,8 @@ private:
     Store store_;
     SimState state_;
     int cameraUsb_;
-    std::mutex mutex_;  ///< of the serial number, which list() reads
+    std::mutex mutex_;                        ///< of the serial number, which list() reads
+    std::optional<sim::FaultScript> faults_;  ///< not played yet
     std::unique_ptr<sim::InProcessDoor> door_;
 };
 

@@ -24,9 +24,10 @@ protected:
 const std::string kSchema = "schema = \"gonio/goniod/1\"\n";
 
 TEST_F(DaemonOptionsFile, SaysWhereEverythingIs) {
-    const auto options = read(kSchema +
-                              "rig = \"usb:MD-7\"\nstore = \"/s\"\nsocket = \"/s/x.sock\"\n"
-                              "profile = \"/p.toml\"\nrecord = \"/r\"\ncomeback_seconds = 90\n");
+    const auto options =
+        read(kSchema +
+             "rig = \"usb:MD-7\"\nstore = \"/s\"\nsocket = \"/s/x.sock\"\n"
+             "profile = \"/p.toml\"\nrecord = \"/r\"\nfaults = \"/f\"\ncomeback_seconds = 90\n");
     ASSERT_TRUE(options) << options.error().message;
     EXPECT_EQ(options->rig, "usb:MD-7");
     EXPECT_EQ(options->store, "/s");
@@ -34,6 +35,7 @@ TEST_F(DaemonOptionsFile, SaysWhereEverythingIs) {
     EXPECT_EQ(options->profile, "/p.toml");
     EXPECT_EQ(options->comebackSeconds, 90);
     EXPECT_EQ(options->record, "/r");
+    EXPECT_EQ(options->faults, "/f");
 }
 
 TEST_F(DaemonOptionsFile, EveryKeyMayBeAbsent) {
