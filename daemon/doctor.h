@@ -17,7 +17,7 @@ struct DaemonSeen {
     int pid = 0;
     std::string rigKind{};    ///< "sim" or "usb"
     std::string rigSerial{};  ///< empty: it has no rig
-    std::optional<double> ledBoardCelsius{}, sensorCelsius{};
+    std::string obstacle{};   ///< why it has no rig, or none that may be lit
 };
 
 /// What is looked at. `root` stands before every absolute path, so that a test can bring its own.

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "daemon/finest_binning.h"
-#include "driver/rig.h"
 #include "proc/core/number_text.h"
 
 namespace gonio::daemon {
@@ -23,9 +22,25 @@ constexpr double kNoisy = 1.3, kTooQuiet = 0.7;  // of the profile's noise
 constexpr double kOutlier = 5;                   // sigma: hot pixels have a noise of their own
 constexpr double kBlackTolerance = 1;            // DN
 constexpr double kUsualShare = 1e-3;             // of reports and chunks that come damaged
+constexpr std::uint64_t kOwnStep = (std::uint64_t{1} << 48) - 1;  // jobs count theirs from 1
 
 std::string ppm(double relative) { return fixed(relative * 1e6, 0) + " ppm"; }
 std::string milliseconds(double seconds) { return fixed(seconds * 1e3, 2) + " ms"; }
+
+// ---- who it is ----
+
+Finding identity(const driver::RigInfo& info) {
+    const driver::Ident& ident = info.ident;
+    const auto part = [&](int shift) { return std::to_string(ident.firmware >> shift & 0xff); };
+    return {"identity",
+            Verdict::Ok,
+            info.serial + ", firmware " + part(16) + "." + part(8) + "." + part(0) +
+                ", hardware revision " + std::to_string(ident.hardwareRevision) + "; " +
+                std::to_string(info.ledAngles.size()) + " LEDs, sensor " +
+                std::to_string(info.sensor.width) + " x " + std::to_string(info.sensor.height) +
+                " of " + std::to_string(info.bitDepth) + " bits",
+            ""};
+}
 
 // ---- clock ----
 
@@ -134,7 +149,7 @@ Result<driver::Capture> darkFrames(driver::Rig& rig) {
     const auto shortest = std::max(kExposure, info.exposureMin);
     const Window whole{.size = info.sensor, .binning = finestBinning(info.limits)};
     if (auto done = rig.configure(whole); !done) return done.error();
-    return rig.capture({.planStep = 1, .exposure = shortest, .frames = 2, .keepLit = false});
+    return rig.capture({.planStep = kOwnStep, .exposure = shortest, .frames = 2, .keepLit = false});
 }
 
 Finding selfTest(const Result<driver::Capture>& dark) {
@@ -243,25 +258,42 @@ Finding counters(const Result<driver::Stats>& stats) {
     return {"counters", Verdict::Ok, seen, ""};
 }
 
+/// What the host has seen go wrong since it claimed the rig.
+Finding link(driver::Rig& rig) {
+    const driver::LinkCounters& seen = rig.link().counters();
+    std::string text;
+    const auto add = [&](std::uint32_t n, const char* what) {
+        if (n > 0) text += (text.empty() ? "" : ", ") + std::to_string(n) + " " + what;
+    };
+    add(seen.badReports, "reports came damaged");
+    add(seen.repeats, "commands repeated");
+    add(seen.lostStatuses, "reports of the state lost");
+    add(seen.missedEvents, "events lost");
+    add(seen.foreignAcks, "answers to another program");
+    add(rig.link().reopens(), "times the reports fell silent and were opened anew");
+    if (rig.anomalies().total() > 0)
+        text += (text.empty() ? "" : ", ") + ("in the stream " + rig.anomalies().text());
+    if (text.empty()) return {"link", Verdict::Ok, "nothing lost since it was claimed", ""};
+    return {"link",
+            Verdict::Note,
+            "since it was claimed, all made good: " + text,
+            "where it was not unplugged meanwhile: another cable or port"};
+}
+
 }  // namespace
 
-std::vector<Finding> examineInside(driver::Transport& transport,
-                                   std::uint64_t session,
-                                   const RigProfile& profile) {
-    auto rig = driver::Rig::open(transport, session);
-    if (!rig) return {{"claim", Verdict::Fail, rig.error().message, "end who uses it; see holder"}};
-    driver::RigLink& link = rig->link();
-    const auto clockBefore = readClock(link);
-    const auto status = rig->status();
+std::vector<Finding> examineClaimed(driver::Rig& rig, const RigProfile& profile) {
+    driver::RigLink& wire = rig.link();
+    const auto clockBefore = readClock(wire);
+    const auto status = rig.status();
     const bool open = status && !mayLight(*status);
     const Result<driver::Capture> dark =
-        open ? Error{ErrorKind::Device, "the interlock is open"} : darkFrames(*rig);
-    const auto clockAfter = readClock(link);
-    const auto stats = link.stats();
-    std::vector<Finding> findings{{"claim", Verdict::Ok, "claimed, and given back dark", ""}};
-    findings.push_back(clock(clockBefore, clockAfter));
+        open ? Error{ErrorKind::Device, "the interlock is open"} : darkFrames(rig);
+    const auto clockAfter = readClock(wire);
+    const auto stats = wire.stats();
+    std::vector<Finding> findings{identity(rig.identify()), clock(clockBefore, clockAfter)};
     if (status) {
-        findings.push_back(temperature(*status, link.limits()));
+        findings.push_back(temperature(*status, wire.limits()));
         findings.push_back(interlock(*status));
     } else {
         const std::string& why = status.error().message;
@@ -275,6 +307,33 @@ std::vector<Finding> examineInside(driver::Transport& transport,
                             : selfTest(dark));
     findings.push_back(noise(dark, profile));
     findings.push_back(counters(stats));
+    findings.push_back(link(rig));
+    return findings;
+}
+
+std::vector<Finding> examineUnasked(const driver::RigInfo& info,
+                                    const std::optional<driver::Status>& status,
+                                    const std::string& why) {
+    const auto unasked = [&](const char* subject) {
+        return Finding{subject, Verdict::Note, "not looked at: " + why, ""};
+    };
+    return {identity(info),
+            unasked("clock"),
+            status ? temperature(*status, info.limits) : unasked("temperature"),
+            status ? interlock(*status) : unasked("interlock"),
+            unasked("self-test"),
+            unasked("noise"),
+            unasked("counters"),
+            unasked("link")};
+}
+
+std::vector<Finding> examineInside(driver::Transport& transport,
+                                   std::uint64_t session,
+                                   const RigProfile& profile) {
+    auto rig = driver::Rig::open(transport, session);
+    if (!rig) return {{"claim", Verdict::Fail, rig.error().message, "end who uses it; see holder"}};
+    std::vector<Finding> findings{{"claim", Verdict::Ok, "claimed, and given back dark", ""}};
+    for (Finding& one : examineClaimed(*rig, profile)) findings.push_back(std::move(one));
     if (Result<void> given = rig->close(); !given)
         findings.front() = {"claim", Verdict::Warn, given.error().message, "plug it in again"};
     return findings;

@@ -120,12 +120,16 @@ Finding store(const Patient& patient) {
 
 Finding daemonReached(const Patient& patient) {
     if (patient.daemon) {
-        const std::string pid = std::to_string(patient.daemon->pid);
-        return {"daemon", Verdict::Ok, "goniod answers, pid " + pid, ""};
+        const std::string seen = "goniod answers, pid " + std::to_string(patient.daemon->pid);
+        const std::string& obstacle = patient.daemon->obstacle;
+        if (obstacle.empty()) return {"daemon", Verdict::Ok, seen, ""};
+        return {"daemon", Verdict::Warn, seen + ", and is hindered: " + obstacle, "see there"};
     }
+    // What to do about it is said below.
+    const std::string& why = patient.daemon.error().message;
     return {"daemon",
             Verdict::Warn,
-            patient.daemon.error().message,
+            why.substr(0, why.find("; start one")),
             "start it: goniod --rig usb, or goniod --rig sim"};
 }
 

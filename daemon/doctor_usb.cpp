@@ -90,18 +90,6 @@ Finding permission(const driver::UsbRig& rig) {
             ruleInFull({.vendor = rig.vendor, .product = rig.product})};
 }
 
-Finding protocol(const driver::UsbRig& rig) {
-    const std::string ours = "GRP/" + std::to_string(driver::kProtocolMajor) + "." +
-                             std::to_string(driver::kProtocolMinor);
-    const std::string both =
-        "the rig speaks " + (rig.protocol.empty() ? "?" : rig.protocol) + ", this program " + ours;
-    if (rig.protocol.empty())
-        return {"protocol", Verdict::Note, "cannot be read before the rig may be opened", ""};
-    if (rig.protocol.starts_with("GRP/" + std::to_string(driver::kProtocolMajor) + "."))
-        return {"protocol", Verdict::Ok, both, ""};
-    return {"protocol", Verdict::Fail, both, "bring the rig's firmware or this program up to date"};
-}
-
 Finding kernelDriver(const Sysfs& sysfs) {
     std::string seen;
     std::string other;  // a kernel driver on the stream
@@ -244,10 +232,22 @@ Finding holder(const Patient& patient, const Users& users) {
 
 }  // namespace
 
+Finding protocolFinding(const std::string& protocol) {
+    const std::string ours = "GRP/" + std::to_string(driver::kProtocolMajor) + "." +
+                             std::to_string(driver::kProtocolMinor);
+    const std::string both =
+        "the rig speaks " + (protocol.empty() ? "?" : protocol) + ", this program " + ours;
+    if (protocol.empty())
+        return {"protocol", Verdict::Note, "cannot be read before the rig may be opened", ""};
+    if (protocol.starts_with("GRP/" + std::to_string(driver::kProtocolMajor) + "."))
+        return {"protocol", Verdict::Ok, both, ""};
+    return {"protocol", Verdict::Fail, both, "bring the rig's firmware or this program up to date"};
+}
+
 std::vector<Finding> examineOutside(const Patient& patient, const driver::UsbRig& rig) {
     const Sysfs sysfs = sysfsOf(patient, rig);
     return {permission(rig),
-            protocol(rig),
+            protocolFinding(rig.protocol),
             kernelDriver(sysfs),
             hidrawNode(sysfs),
             speed(rig),

@@ -15,6 +15,9 @@ namespace gonio::daemon {
 [[nodiscard]] std::vector<Finding> examineOutside(const Patient& patient,
                                                   const driver::UsbRig& rig);
 
+/// Its version of the protocol ("GRP/1.0"; empty: not known) and ours.
+[[nodiscard]] Finding protocolFinding(const std::string& protocol);
+
 /// What stands against claiming the rig now: no permission, or somebody has it. Empty: nothing.
 [[nodiscard]] std::string inTheWay(const Patient& patient, const driver::UsbRig& rig);
 

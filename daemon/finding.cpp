@@ -12,4 +12,11 @@ std::string_view name(Verdict verdict) {
     return "";
 }
 
+std::optional<Verdict> parseVerdict(std::string_view name) {
+    for (const Verdict one : {Verdict::Ok, Verdict::Note, Verdict::Warn, Verdict::Fail}) {
+        if (name == daemon::name(one)) return one;
+    }
+    return std::nullopt;
+}
+
 }  // namespace gonio::daemon

@@ -1,6 +1,7 @@
 #pragma once
 // What the doctor says: one thing looked at, what was seen, and what to do about it.
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -14,6 +15,8 @@ enum class Verdict {
 };
 /// "ok", "note", "warn", "fail".
 [[nodiscard]] std::string_view name(Verdict verdict);
+/// Empty: none of these.
+[[nodiscard]] std::optional<Verdict> parseVerdict(std::string_view name);
 
 struct Finding {
     std::string subject;  ///< "udev-rule"

@@ -17,6 +17,10 @@
 
 namespace gonio::daemon {
 
+/// What a person can do about frames that are not what was asked for.
+inline constexpr const char* kOddFramesCure =
+    "see to the rig's cable and camera (gonio doctor), and keep lights away";
+
 /// A frame that is not what was asked for.
 struct OddFrame {
     std::optional<State> state{};  ///< empty: dark

@@ -185,6 +185,14 @@ Result<sim::DeviceConfig> simDevice(const SimState& state, int cameraUsb) {
         .rig = *rig};
 }
 
+Result<sim::FaultScript> readFaults(const std::filesystem::path& file) {
+    const Result<std::string> text = proc::readFile(file);
+    if (!text) return text.error();
+    Result<sim::FaultScript> script = sim::FaultScript::parse(*text);
+    if (!script) return script.error().in(file.string());
+    return script;
+}
+
 Result<std::unique_ptr<sim::InProcessDoor>> openSim(const SimState& state,
                                                     const Store& store,
                                                     int cameraUsb) {

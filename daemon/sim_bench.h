@@ -8,12 +8,14 @@
 // change the drift too, and what is wrong with the sample (sim/sample_errors.h); none at first.
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
 
 #include "daemon/store.h"
 #include "proc/core/scatterer.h"
 #include "proc/table/sample_set.h"
+#include "sim/faults/fault_script.h"
 #include "sim/in_process.h"
 
 namespace gonio::daemon {
@@ -51,6 +53,9 @@ void describe(const SimState& state, proc::SampleInfo& info);
 
 /// The rig that the state says. `cameraUsb` is 2 or 3, as the rig profile says.
 [[nodiscard]] Result<sim::DeviceConfig> simDevice(const SimState& state, int cameraUsb = 2);
+
+/// A fault script (docs/fault-scripts.md); errors name the file and the line.
+[[nodiscard]] Result<sim::FaultScript> readFaults(const std::filesystem::path& file);
 
 /// A rig as the state says, with its placement under it and a camera of this USB (2 or 3, as the
 /// rig profile says).

@@ -10,6 +10,7 @@ namespace {
 
 constexpr int kBoots = 3;  // of a rig within one bracket
 constexpr std::uint16_t kFullLevel = 65535;
+constexpr const char* kAgain = "; the bracket is taken again";
 
 }  // namespace
 
@@ -41,7 +42,7 @@ Result<void> WholeBrackets::take(std::optional<State> state,
                              bracketName(state) + ": the rig booted " + std::to_string(boots_) +
                                  " times in one bracket; see to its power supply: " + why};
             }
-            tell(Cause::NewBoot, why);
+            tell(Cause::NewBoot, why + kAgain);
             continue;
         }
         if (Result<void> may = mayTakeAgain(taken.error()); !may) return may;
@@ -50,14 +51,17 @@ Result<void> WholeBrackets::take(std::optional<State> state,
 
 Result<void> WholeBrackets::mayTakeAgain(const Error& why) {
     if (isOdd_) {
-        if (oddAttempts_++ > 0) return why.in("taken again, and once more not what was asked for");
-        return {};
+        if (oddAttempts_++ == 0) return {};
+        return Error{why.kind,
+                     "taken again, and once more not what was asked for: " + why.message + "; " +
+                         kOddFramesCure,
+                     why.deviceStatus};
     }
     const std::optional<Error> passing = passes(why);
     if (!passing) return why;
     if (Result<void> again = attendance_.suspended(*passing); !again) return again;
     noteBreak();
-    tell(Cause::Suspended, why.message);
+    tell(Cause::Suspended, why.message + kAgain);
     return {};
 }
 
@@ -79,7 +83,10 @@ Result<void> WholeBrackets::look(std::optional<State> state, const Frame& frame)
     if (!odd) return {};
     odd->dropped = odd->kind != Cause::Unlit || oddAttempts_ == 0;
     odd_.push_back(*odd);
-    tell(odd->kind, odd->text());
+    const char* const then = !odd->dropped       ? "; taken for what lies there"
+                             : oddAttempts_ == 0 ? kAgain
+                                                 : ", once more";
+    tell(odd->kind, odd->text() + then);
     if (!odd->dropped) return {};
     isOdd_ = true;
     return Error{ErrorKind::Quality, bracketName(state) + ": " + odd->text()};

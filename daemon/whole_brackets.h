@@ -36,7 +36,9 @@ public:
     /// An error, which has to end the attempt, for one that is not what was asked for.
     [[nodiscard]] Result<void> look(std::optional<State> state, const Frame& frame);
     /// The driver has taken frames of it again, by what the rig said of them.
-    void rejected(const std::string& evidence) const { tell(Cause::Rejected, evidence); }
+    void rejected(const std::string& evidence) const {
+        tell(Cause::Rejected, "not as asked for, and taken again: " + evidence);
+    }
 
     /// How often so far the rig has booted again or refused to light: what was taken at another
     /// count is not of one piece with what is taken now.

@@ -25,7 +25,7 @@ std::uint64_t CaptureIds::next(std::uint64_t planStep) {
     used.attempt = static_cast<std::uint16_t>(used.attempt == kMostAttempts ? 1 : used.attempt + 1);
     recent_.push_back(used);
     if (recent_.size() > kRemembered) recent_.erase(recent_.begin());
-    return planStep << 16 | used.attempt;
+    return planStep << kAttemptBits | used.attempt;
 }
 
 }  // namespace gonio::driver

@@ -13,8 +13,12 @@ public:
     CaptureIds();
     /// Allocates nothing.
     [[nodiscard]] std::uint64_t next(std::uint64_t planStep);
+    [[nodiscard]] static std::uint64_t planStepOf(std::uint64_t captureId) {
+        return captureId >> kAttemptBits;
+    }
 
 private:
+    static constexpr int kAttemptBits = 16;
     struct Used {
         std::uint64_t planStep = 0;
         std::uint16_t attempt = 0;

@@ -1,11 +1,15 @@
 #include "driver/recorder.h"
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
+#include <iterator>
 #include <system_error>
 #include <type_traits>
 #include <utility>
 
+#include "driver/protocol/wire.h"
 #include "proc/core/log.h"
 
 namespace gonio::driver {
@@ -19,19 +23,58 @@ Error fileError(const fs::path& path, const std::string& what) {
     return {ErrorKind::File, "record to " + path.string() + ": " + what};
 }
 
-/// Its size, or why it cannot be continued.
+/// Nothing, or the beginning of a header: whoever began it was stopped at once.
+bool hardlyBegun(std::istream& file, std::uint64_t bytes) {
+    if (bytes >= kRecordingHeaderBytes) return false;
+    const auto header = recordingHeader();
+    std::string begun(bytes, '\0');
+    file.read(begun.data(), static_cast<std::streamsize>(bytes));
+    return file && std::equal(begun.begin(), begun.end(), header.begin(), [](char a, auto b) {
+               return static_cast<std::uint8_t>(a) == b;
+           });
+}
+
+/// From `begin` on there is one record at most, of which not all reached the disk: it is cut off,
+/// damaged and the last, or zeros are in its place.
+bool tornFrom(std::istream& file, std::uint64_t begin, std::uint64_t bytes) {
+    std::array<std::uint8_t, 4> word{};
+    const std::uint64_t frame = 2 * word.size();  // a length before, a CRC after
+    if (bytes - begin < frame) return true;
+    file.seekg(static_cast<std::streamoff>(begin));
+    file.read(reinterpret_cast<char*>(word.data()), word.size());  // NOLINT(*reinterpret*)
+    const auto length = get<std::uint32_t>(word, 0);
+    if (length > 0) return length <= kLongestRecord && length + frame >= bytes - begin;
+    return std::all_of(std::istreambuf_iterator<char>(file), {}, [](char c) { return c == 0; });
+}
+
+/// How much of it can be continued, or why nothing can.
 Result<std::uint64_t> soundRecording(const fs::path& path) {
     std::error_code problem;
     const std::uint64_t bytes = fs::file_size(path, problem);
     if (problem) return fileError(path, problem.message());
+    std::ifstream file(path, std::ios::binary);
+    if (hardlyBegun(file, bytes)) return std::uint64_t{0};
     auto reader =
         RecordingReader::open(std::make_unique<std::ifstream>(path, std::ios::binary), bytes);
     if (!reader) return reader.error().in(path.string());
     while (true) {
         const auto call = reader->next();
+        if (!call && tornFrom(file, reader->begin(), bytes)) return reader->begin();
         if (!call) return call.error().in(path.string());
         if (!*call) return bytes;
     }
+}
+
+/// Without the record that the last writer was stopped in.
+Result<void> shorten(const fs::path& path, std::uint64_t bytes) {
+    std::error_code problem;
+    const std::uint64_t torn = fs::file_size(path, problem) - bytes;
+    if (problem || torn == 0) return {};
+    fs::resize_file(path, bytes, problem);
+    if (problem) return fileError(path, "its torn last record: " + problem.message());
+    log::warning("record to " + path.string() + ": the last " + std::to_string(torn) +
+                 " bytes were torn and are cut off; it goes on at byte " + std::to_string(bytes));
+    return {};
 }
 
 }  // namespace
@@ -42,6 +85,7 @@ Result<std::unique_ptr<Recorder>> Recorder::open(const fs::path& file) {
     if (fs::exists(file, ignored)) {
         const Result<std::uint64_t> sound = soundRecording(file);
         if (!sound) return sound.error();
+        if (Result<void> cut = shorten(file, *sound); !cut) return cut.error();
         recorder->bytes_ = *sound;
     }
     // Without a buffer of its own: what has been written is there whatever becomes of the program.
@@ -75,8 +119,9 @@ void Recorder::add(const RecordedCall& call) {
     file_.close();
     std::error_code ignored;
     fs::resize_file(path_, bytes_, ignored);  // without the half of this record
-    log::warning("record to " + path_.string() + ": " + why + "; the record ends here at " +
-                 std::to_string(bytes_) + " bytes, the rig goes on");
+    ending_ = "record to " + path_.string() + ": " + why + "; the record ends here at " +
+              std::to_string(bytes_) + " bytes, the rig goes on";
+    log::warning(ending_);
 }
 
 RecordingTransport::RecordingTransport(Transport& inner, Recorder& recorder)

@@ -15,13 +15,16 @@ namespace gonio::driver {
 
 class Recorder {
 public:
-    /// A recording that is there already is continued; a File error for any other file.
+    /// A recording that is there already is continued, without a last record that a power cut has
+    /// torn (a warning); an empty file is begun. A File error for any other file, which stays.
     [[nodiscard]] static Result<std::unique_ptr<Recorder>> open(const std::filesystem::path& file);
 
     /// One that failed as the one before it did is not told again.
     void add(const RecordedCall& call);
     /// It is written no more.
     [[nodiscard]] bool ended() const { return !file_.is_open(); }
+    /// Why, where it has ended before its time.
+    [[nodiscard]] const std::string& ending() const { return ending_; }
 
 private:
     explicit Recorder(std::filesystem::path path) : path_(std::move(path)) {}
@@ -32,6 +35,7 @@ private:
     std::uint64_t bytes_ = 0;  ///< up to the last whole record
     std::vector<std::uint8_t> buffer_;
     std::string refusal_;  ///< of the last opening
+    std::string ending_;
 };
 
 /// All that passes through it is recorded. Both are borrowed.

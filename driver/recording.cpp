@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "driver/protocol/crc.h"
+#include "driver/protocol/reports.h"
 #include "driver/protocol/wire.h"
 
 namespace gonio::driver {
@@ -17,9 +18,8 @@ using Bytes = std::span<const std::uint8_t>;
 constexpr std::array<std::uint8_t, 8> kMagic{'G', 'O', 'N', 'I', 'O', 'U', 'S', 'B'};
 constexpr std::uint16_t kVersion = 1;
 constexpr std::size_t kBodyHead = 26;  // kind, outcome, begin, end, lengths of sent and got
-constexpr std::size_t kLongest = std::size_t{64} << 20;  // no transfer is as long
-constexpr Nanoseconds kLatest{std::int64_t{1} << 60};    // 36 years after boot
-constexpr std::size_t kShown = 12;                       // bytes of a report in a message
+constexpr Nanoseconds kLatest{std::int64_t{1} << 60};  // 36 years after boot
+constexpr std::size_t kShown = 8;                      // bytes of a report in a message
 
 template <class T>
 void append(std::vector<std::uint8_t>& bytes, T value) {
@@ -33,6 +33,18 @@ void append(std::vector<std::uint8_t>& bytes, Bytes more) {
 
 void append(std::vector<std::uint8_t>& bytes, std::string_view text) {
     for (const char c : text) bytes.push_back(static_cast<std::uint8_t>(c));
+}
+
+/// " 20 88 77 .."
+std::string hexOf(Bytes bytes) {
+    constexpr std::string_view kDigits = "0123456789ABCDEF";
+    std::string text;
+    for (const std::uint8_t byte : bytes.first(std::min(bytes.size(), kShown))) {
+        text += ' ';
+        text += kDigits[byte >> 4U];
+        text += kDigits[byte & 15U];
+    }
+    return bytes.size() > kShown ? text + " .." : text;
 }
 
 std::string textOf(Bytes bytes) { return {bytes.begin(), bytes.end()}; }
@@ -133,14 +145,28 @@ std::string describe(Kind kind, Bytes sent) {
                                                       "",
                                                       "reopen the reports",
                                                       "reset the port"};
-    constexpr std::string_view kDigits = "0123456789ABCDEF";
-    std::string text(kNames[static_cast<std::size_t>(kind)]);
-    for (const std::uint8_t byte : sent.first(std::min(sent.size(), kShown))) {
-        text += ' ';
-        text += kDigits[byte >> 4U];
-        text += kDigits[byte & 15U];
+    const std::string text(kNames[static_cast<std::size_t>(kind)]);
+    if (sent.empty()) return text;
+    if (kind == Kind::Write && sent.size() == kReportBytes) {
+        Report report{};
+        std::copy(sent.begin(), sent.end(), report.begin());
+        if (const Result<Command> command = decodeCommand(report))
+            return text + " " + opName(command->op) + ", sequence " +
+                   std::to_string(command->sequence);
     }
-    return sent.size() > kShown ? text + " .." : text;
+    return text + hexOf(kind == Kind::Write ? sent : sent.first(1));
+}
+
+std::string difference(const RecordedCall& wanted, Kind kind, Bytes sent) {
+    const std::string text =
+        "wanted: " + describe(wanted.kind, wanted.sent) + "; seen: " + describe(kind, sent);
+    const Bytes then(wanted.sent);
+    if (wanted.kind != kind || then.size() != sent.size()) return text;
+    const auto [a, b] = std::mismatch(then.begin(), then.end(), sent.begin());
+    if (a == then.end()) return text;
+    const auto at = static_cast<std::size_t>(a - then.begin());
+    return text + "; byte " + std::to_string(at) + ": wanted" + hexOf(then.subspan(at)) + ", seen" +
+           hexOf(sent.subspan(at));
 }
 
 std::vector<std::uint8_t> encodeStrings(const DeviceStrings& strings) {
@@ -220,7 +246,7 @@ Error RecordingReader::damaged(std::uint64_t at, const std::string& what) const 
 }
 
 Result<std::optional<RecordedCall>> RecordingReader::next() {
-    const std::uint64_t begin = at_;
+    const std::uint64_t begin = begin_ = at_;
     if (begin == bytes_) return std::optional<RecordedCall>{};
     std::array<std::uint8_t, 4> word{};
     const auto cut = [&] {
@@ -230,7 +256,7 @@ Result<std::optional<RecordedCall>> RecordingReader::next() {
     };
     if (!read(word)) return cut();
     const std::size_t length = get<std::uint32_t>(word, 0);
-    if (length > kLongest)
+    if (length > kLongestRecord)
         return damaged(begin, "a record of " + std::to_string(length) + " bytes cannot be");
     if (length + word.size() > bytes_ - at_) return cut();
     body_.resize(length);

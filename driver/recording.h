@@ -47,13 +47,18 @@ struct RecordedCall {
     bool operator==(const RecordedCall& other) const;
 };
 
-/// "write 20 88 77 ..", for a person.
+/// "write ARM, sequence 12" or "set feature 02", for a person.
 [[nodiscard]] std::string describe(RecordedCall::Kind kind, std::span<const std::uint8_t> sent);
+/// What was recorded and what was asked instead, with the bytes from the first that differs.
+[[nodiscard]] std::string difference(const RecordedCall& wanted,
+                                     RecordedCall::Kind kind,
+                                     std::span<const std::uint8_t> sent);
 
 [[nodiscard]] std::vector<std::uint8_t> encodeStrings(const DeviceStrings& strings);
 [[nodiscard]] std::optional<DeviceStrings> decodeStrings(std::span<const std::uint8_t> bytes);
 
 inline constexpr std::size_t kRecordingHeaderBytes = 16;
+inline constexpr std::size_t kLongestRecord = std::size_t{64} << 20;  ///< no transfer is as long
 [[nodiscard]] std::array<std::uint8_t, kRecordingHeaderBytes> recordingHeader();
 /// Puts a whole record at the end of `bytes`.
 void appendRecord(std::vector<std::uint8_t>& bytes, const RecordedCall& call);
@@ -67,6 +72,8 @@ public:
     [[nodiscard]] Result<std::optional<RecordedCall>> next();
     /// Of the record that next() reads, from 1.
     [[nodiscard]] std::uint64_t number() const { return number_; }
+    /// Where the record begins that next() read, or could not read.
+    [[nodiscard]] std::uint64_t begin() const { return begin_; }
 
 private:
     RecordingReader(std::unique_ptr<std::istream> file, std::uint64_t bytes)
@@ -75,7 +82,7 @@ private:
     [[nodiscard]] Error damaged(std::uint64_t at, const std::string& what) const;
 
     std::unique_ptr<std::istream> file_;
-    std::uint64_t bytes_ = 0, at_ = 0, number_ = 1;
+    std::uint64_t bytes_ = 0, at_ = 0, begin_ = 0, number_ = 1;
     std::vector<std::uint8_t> body_;
 };
 

@@ -6,6 +6,7 @@
 #include <system_error>
 #include <utility>
 
+#include "driver/capture_ids.h"
 #include "driver/protocol/reports.h"
 
 namespace gonio::driver {
@@ -20,6 +21,9 @@ Report reportOf(const Bytes& bytes) {
     std::copy_n(bytes.begin(), std::min(bytes.size(), report.size()), report.begin());
     return report;
 }
+
+constexpr const char* kCure =
+    "; do the same jobs in the same order, on the same calibrations (docs/recording.md)";
 
 std::optional<std::uint64_t> sessionIn(const RecordedCall& call) {
     if (call.kind != Kind::SetFeature ||
@@ -114,8 +118,8 @@ Result<Bytes> Replay::PlayedTransport::ask(Kind kind, BulkBytes sent) {
     while (const RecordedCall* call = next(kind, sent)) {
         if (call->ofHost()) {
             if (call->kind != kind || !std::equal(sent.begin(), sent.end(), call->sent.begin())) {
-                return fail(": wanted: " + describe(call->kind, call->sent) +
-                            "; seen: " + describe(kind, sent));
+                replay_.diverged_ = fail(": " + difference(*call, kind, sent) + kCure);
+                return *failure_;
             }
             Result<RecordedCall> taken = take();
             if (!taken) return taken.error();
@@ -177,9 +181,11 @@ Result<std::unique_ptr<Replay>> Replay::open(
 /// Whatever is wrong is found before anything is played.
 Result<void> Replay::readThrough(RecordingReader reader) {
     while (true) {
+        const std::uint64_t number = reader.number();
         const auto call = reader.next();
         if (!call) return call.error();
         if (!*call) return {};
+        notePlanStep(**call, number);
         if ((*call)->kind == Kind::Open && (*call)->outcome == Outcome::Done) {
             sessions_.emplace_back();
             if (serial_.empty()) serial_ = decodeStrings((*call)->got)->serial;
@@ -187,6 +193,13 @@ Result<void> Replay::readThrough(RecordingReader reader) {
             sessions_.back() = sessionIn(**call);
         }
     }
+}
+
+void Replay::notePlanStep(const RecordedCall& call, std::uint64_t number) {
+    if (call.kind != Kind::Write) return;
+    const Result<Command> command = decodeCommand(reportOf(call.sent));
+    if (!command || command->op != Op::Arm) return;
+    arms_.push_back({number, CaptureIds::planStepOf(decodeArm(command->arguments).captureId)});
 }
 
 Result<void> Replay::advance() {
@@ -200,11 +213,18 @@ Result<void> Replay::advance() {
     return {};
 }
 
+std::optional<Error> Replay::end() const {
+    if (diverged_) return diverged_;
+    if (!ahead_) return Error{ErrorKind::NoRig, "replay: the recording is over"};
+    return std::nullopt;
+}
+
 Result<std::unique_ptr<Transport>> Replay::openRig() {
+    if (diverged_) return *diverged_;
     while (ahead_ && ahead_->kind != Kind::Open) {
         if (auto on = advance(); !on) return on.error();
     }
-    if (!ahead_) return Error{ErrorKind::NoRig, "replay: the recording is over"};
+    if (const auto over = end()) return *over;
     const RecordedCall opening = std::move(*ahead_);
     if (auto on = advance(); !on) return on.error();
     if (opening.outcome == Outcome::Failed) return opening.error;
@@ -213,8 +233,16 @@ Result<std::unique_ptr<Transport>> Replay::openRig() {
         std::make_unique<PlayedTransport>(*this, *decodeStrings(opening.got), opening.end));
 }
 
-std::optional<std::uint64_t> Replay::nextSession() const {
-    return opened_ < sessions_.size() ? sessions_[opened_] : std::nullopt;
+std::optional<std::uint64_t> Replay::session() const {
+    return opened_ > 0 ? sessions_[opened_ - 1] : std::nullopt;
+}
+
+std::optional<std::uint64_t> Replay::nextPlanStep() const {
+    const auto next = std::lower_bound(
+        arms_.begin(), arms_.end(), number_, [](const ArmedStep& arm, std::uint64_t number) {
+            return arm.number < number;
+        });
+    return next != arms_.end() ? std::optional(next->planStep) : std::nullopt;
 }
 
 }  // namespace gonio::driver

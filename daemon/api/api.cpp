@@ -153,6 +153,19 @@ Result<ApiReply> getRigs(const Call& call) {
     return reply("rigs", {{"rigs", listed(*rigs)}});
 }
 
+/// A doctor's visit may take as long as a rig that does not answer lets it.
+Result<ApiReply> getDoctor(const Call& call) {
+    const auto asked = call.request.query.find("hands_off");
+    const std::string handsOff = asked == call.request.query.end() ? "false" : asked->second;
+    if (handsOff != "true" && handsOff != "false") {
+        return Error{ErrorKind::Usage, "hands_off '" + handsOff + "': wanted true or false"};
+    }
+    auto findings = call.engine.examine(handsOff == "true");
+    if (!findings) return findings.error();
+    for (Finding& one : *findings) one.rig = call.engine.status().serial;
+    return reply("doctor", {{"findings", listed(*findings)}});
+}
+
 Result<ApiReply> getSamples(const Call& call) {
     Result<Store> store = reading(call);
     if (!store) return store.error();
@@ -395,6 +408,7 @@ struct Route {
 constexpr std::array kRoutes{
     Route{"GET", "/api/v1/status", getStatus},
     Route{"GET", "/api/v1/rigs", getRigs},
+    Route{"GET", "/api/v1/doctor", getDoctor},
     Route{"GET", "/api/v1/sessions", getSessions},
     Route{"POST", "/api/v1/sessions", postSession},
     Route{"POST", "/api/v1/sessions/close", postSessionClose},

@@ -93,6 +93,14 @@ Json toJson(const SampleRecord& sample) {
             {"session", orNull(sample.session)}};
 }
 
+Json toJson(const Finding& finding) {
+    return {{"rig", orNull(finding.rig)},
+            {"subject", finding.subject},
+            {"verdict", std::string(name(finding.verdict))},
+            {"seen", finding.seen},
+            {"cure", orNull(finding.cure)}};
+}
+
 Json toJson(const CalibrationRecord& calibration, const std::string& whyNot) {
     return {{"id", calibration.id},
             {"rig", calibration.rig},

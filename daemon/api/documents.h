@@ -12,6 +12,7 @@ namespace gonio::daemon {
 [[nodiscard]] nlohmann::ordered_json toJson(const SessionRecord& session);
 [[nodiscard]] nlohmann::ordered_json toJson(const RigListing& rig);
 [[nodiscard]] nlohmann::ordered_json toJson(const SampleRecord& sample);
+[[nodiscard]] nlohmann::ordered_json toJson(const Finding& finding);
 
 /// `whyNot`: why it is not good now; empty: it is.
 [[nodiscard]] nlohmann::ordered_json toJson(const CalibrationRecord& calibration,

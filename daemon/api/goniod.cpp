@@ -44,29 +44,39 @@ sigset_t blockSignals() {
     return signals;
 }
 
-Result<std::unique_ptr<RigPort>> openPort(const std::string& rig,
+Result<std::unique_ptr<RigPort>> openPort(const RigChoice& choice,
                                           const std::filesystem::path& store,
-                                          const RigProfile& profile) {
-    const Result<RigChoice> choice = parseRigChoice(rig);
-    if (!choice) return choice.error();
-    if (!choice->replay.empty()) {
-        auto replay = driver::Replay::open(choice->replay);
+                                          const RigProfile& profile,
+                                          const std::filesystem::path& faults) {
+    if (!faults.empty() && !choice.simulated) {
+        return Error{ErrorKind::Usage, "--faults is for the simulated rig only: --rig sim"};
+    }
+    if (!choice.replay.empty()) {
+        auto replay = driver::Replay::open(choice.replay);
         if (!replay) return replay.error();
         return std::unique_ptr<RigPort>(std::make_unique<ReplayPort>(std::move(*replay)));
     }
-    if (!choice->simulated) {
+    if (!choice.simulated) {
         return std::unique_ptr<RigPort>(
-            std::make_unique<UsbPort>(driver::UsbSelection{.serial = choice->serial}));
+            std::make_unique<UsbPort>(driver::UsbSelection{.serial = choice.serial}));
     }
     Result<std::unique_ptr<SimPort>> sim = SimPort::open(store, profile.cameraUsb);
     if (!sim) return sim.error();
+    if (!faults.empty()) {
+        Result<sim::FaultScript> script = readFaults(faults);
+        if (!script) return script.error();
+        (*sim)->play(std::move(*script));
+    }
     return std::unique_ptr<RigPort>(std::move(*sim));
 }
 
 Result<std::unique_ptr<RigPort>> recorded(std::unique_ptr<RigPort> port,
                                           const std::filesystem::path& file) {
     auto recorder = driver::Recorder::open(file);
-    if (!recorder) return recorder.error();
+    if (!recorder) {
+        return Error{recorder.error().kind,
+                     recorder.error().message + "; choose another file with --record"};
+    }
     return std::unique_ptr<RigPort>(
         std::make_unique<RecordedPort>(std::move(port), std::move(*recorder)));
 }
@@ -90,7 +100,10 @@ Result<void> serve(const DaemonOptions& options) {
     Result<RigProfile> profile =
         readProfile(options.profile.empty() ? defaultProfile() : options.profile);
     if (!profile) return profile.error();
-    Result<std::unique_ptr<RigPort>> port = openPort(options.rig, store, *profile);
+    const Result<RigChoice> choice = parseRigChoice(options.rig);
+    if (!choice) return choice.error();
+    if (Result<void> good = checkRecord(*choice, options.record); !good) return good;
+    Result<std::unique_ptr<RigPort>> port = openPort(*choice, store, *profile, options.faults);
     if (port && !options.record.empty()) port = recorded(std::move(*port), options.record);
     if (!port) return port.error();
     const driver::SteadyClock clock;
@@ -134,6 +147,8 @@ struct Arguments {
                        "0: it ends at once")
             ->check(CLI::NonNegativeNumber);
         app.add_option("--record", options.record, "record all traffic with the rig in this file");
+        app.add_option(
+            "--faults", options.faults, "what goes wrong with the simulated rig, and when");
         app.add_option("--config", config, "goniod.toml, for what the options above do not say");
         app.add_flag("-v,--verbose", verbose, "say on stderr what is done");
     }

@@ -18,6 +18,7 @@ Result<DaemonOptions> readDaemonOptions(const std::filesystem::path& file) {
                           .socket = keys.textOr("socket", ""),
                           .profile = keys.textOr("profile", ""),
                           .record = keys.textOr("record", ""),
+                          .faults = keys.textOr("faults", ""),
                           .socketMode = keys.textOr("socket_mode", "")};
     constexpr double kNotTold = -1;
     const double comeback = keys.notNegativeOr("comeback_seconds", kNotTold);
@@ -33,6 +34,7 @@ DaemonOptions overlaid(DaemonOptions first, const DaemonOptions& second) {
     if (first.socket.empty()) first.socket = second.socket;
     if (first.profile.empty()) first.profile = second.profile;
     if (first.record.empty()) first.record = second.record;
+    if (first.faults.empty()) first.faults = second.faults;
     if (first.socketMode.empty()) first.socketMode = second.socketMode;
     if (!first.comebackSeconds) first.comebackSeconds = second.comebackSeconds;
     return first;
@@ -52,6 +54,17 @@ Result<RigChoice> parseRigChoice(const std::string& rig) {
                  rig.empty()
                      ? "which rig? Say --rig sim, --rig usb, --rig usb:SERIAL or --rig replay:FILE"
                      : "--rig '" + rig + "': wanted sim, usb, usb:SERIAL or replay:FILE"};
+}
+
+Result<void> checkRecord(const RigChoice& rig, const std::filesystem::path& record) {
+    std::error_code missing;
+    if (rig.replay.empty() || record.empty()) return {};
+    const bool same =
+        rig.replay == record || std::filesystem::equivalent(rig.replay, record, missing);
+    if (!same) return {};
+    return Error{ErrorKind::Usage,
+                 "--record " + record.string() +
+                     ": this recording is being played; record into another file"};
 }
 
 Result<SocketAccess> parseSocketMode(const std::string& mode) {

@@ -1,9 +1,10 @@
 // doctor: what stands between this computer and a measurement.
 
-#include <cmath>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "daemon/api/documents.h"
 #include "daemon/cli/answer.h"
 #include "daemon/cli/commands.h"
 #include "daemon/cli/daemon_client.h"
@@ -19,16 +20,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json textOrNull(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
-
-Json toJson(const Finding& finding) {
-    return {{"rig", textOrNull(finding.rig)},
-            {"subject", finding.subject},
-            {"verdict", std::string(name(finding.verdict))},
-            {"seen", finding.seen},
-            {"cure", textOrNull(finding.cure)}};
-}
-
 Result<DaemonSeen> askDaemon(const CommonOptions& common) {
     const auto answer = DaemonClient(common.socketPath()).get("/api/v1/status");
     if (!answer) return answer.error();
@@ -37,13 +28,7 @@ Result<DaemonSeen> askDaemon(const CommonOptions& common) {
         const Json& rig = status.at("rig");
         seen = {.pid = status.at("daemon").at("pid"), .rigKind = rig.at("kind")};
         if (rig.at("serial").is_string()) seen.rigSerial = rig.at("serial");
-        const auto celsius = [&](const char* where) -> std::optional<double> {
-            const auto found = rig.find(where);
-            if (found == rig.end() || !found->is_number()) return std::nullopt;
-            return found->get<double>();
-        };
-        seen.ledBoardCelsius = celsius("led_board_celsius");
-        seen.sensorCelsius = celsius("sensor_celsius");
+        if (rig.at("obstacle").is_string()) seen.obstacle = rig.at("obstacle");
     });
     if (!read) return read.error();
     return seen;
@@ -61,18 +46,31 @@ std::uint64_t randomSession() {
     return half() << 32 | half() | 1;  // its low half is not 0
 }
 
-/// What the daemon knows of the rig that it has.
-std::vector<Finding> byDaemon(const DaemonSeen& daemon) {
-    std::string seen;
-    const auto add = [&](const char* where, const std::optional<double>& celsius) {
-        if (!celsius) return;
-        const std::string place = std::string(where) + " " + std::to_string(std::lround(*celsius));
-        seen += (seen.empty() ? "" : ", ") + place + " degC";
+Finding findingIn(const Json& json) {
+    const auto text = [&](const char* member) {
+        return json.at(member).is_string() ? json.at(member).get<std::string>() : std::string();
     };
-    add("LED board", daemon.ledBoardCelsius);
-    add("sensor", daemon.sensorCelsius);
-    if (seen.empty()) return {};
-    return {{"temperature", Verdict::Ok, seen + ", says goniod", ""}};
+    const auto verdict = parseVerdict(text("verdict"));
+    return {text("subject"), verdict.value_or(Verdict::Note), text("seen"), text("cure")};
+}
+
+/// What the daemon says of the rig that it has.
+std::vector<Finding> byDaemon(const CommonOptions& common, const DoctorOptions& options) {
+    const std::string handsOff = options.handsOff ? "true" : "false";
+    const auto answer =
+        DaemonClient(common.socketPath()).get("/api/v1/doctor?hands_off=" + handsOff);
+    std::vector<Finding> findings;
+    Result<void> read = answer ? understood(*answer,
+                                            [&](const Json& json) {
+                                                for (const Json& one : json.at("findings"))
+                                                    findings.push_back(findingIn(one));
+                                            })
+                               : Result<void>(answer.error());
+    if (read) return findings;
+    return {{"claim",
+             Verdict::Note,
+             "not claimed, goniod has it, and says: " + read.error().message,
+             "restart a goniod of another version than this program"}};
 }
 
 std::vector<Finding> inside(const Patient& patient,
@@ -80,15 +78,10 @@ std::vector<Finding> inside(const Patient& patient,
                             const DoctorOptions& options) {
     const std::string obstacle = options.handsOff ? "not asked for" : inTheWay(patient, rig);
     if (!obstacle.empty()) {
-        std::vector<Finding> findings{
-            {"claim",
-             Verdict::Note,
-             "not claimed, " + obstacle + ": no clock, dark frames, noise and counters of it",
-             options.handsOff ? "" : "once it is free, ask again"}};
-        if (usedByDaemon(patient, rig)) {
-            for (Finding& one : byDaemon(*patient.daemon)) findings.push_back(std::move(one));
-        }
-        return findings;
+        return {{"claim",
+                 Verdict::Note,
+                 "not claimed, " + obstacle + ": no clock, dark frames, noise and counters of it",
+                 options.handsOff ? "" : "once it is free, ask again"}};
     }
     const auto profile = profileOf(rig, options);
     if (!profile) return {{"noise", Verdict::Fail, profile.error().message, "another --profile"}};
@@ -100,17 +93,45 @@ std::vector<Finding> inside(const Patient& patient,
     return examineInside(**transport, randomSession(), *profile);
 }
 
-std::vector<Finding> allOf(const Patient& patient, const DoctorOptions& options) {
-    std::vector<Finding> findings = examineComputer(patient);
-    if (!patient.rigs) return findings;
-    for (const driver::UsbRig& rig : *patient.rigs) {
-        std::vector<Finding> ofRig = examineOutside(patient, rig);
-        for (Finding& finding : inside(patient, rig, options)) ofRig.push_back(std::move(finding));
-        for (Finding& finding : ofRig) {
-            finding.rig = nameOf(rig);
-            findings.push_back(std::move(finding));
-        }
+/// A rig that no kernel shows.
+std::vector<Finding> examineUnplugged(const DaemonSeen& daemon) {
+    const std::string goniod = "goniod (pid " + std::to_string(daemon.pid) + ")";
+    if (daemon.rigKind == "usb")
+        return {{"usb", Verdict::Fail, "it is not plugged in", "plug it in"}};
+    const bool sim = daemon.rigKind == "sim";
+    const std::string where = sim ? "simulated in the daemon" : "a recording in the daemon";
+    return {{"holder", Verdict::Ok, goniod + ", the daemon that was asked", ""},
+            {"speed", Verdict::Note, where + ", without USB", ""},
+            {"autosuspend", Verdict::Note, where + ", without USB", ""}};
+}
+
+void add(std::vector<Finding>& findings, std::vector<Finding> more, const std::string& rig) {
+    for (Finding& finding : more) {
+        finding.rig = rig;
+        const bool said = std::any_of(findings.begin(), findings.end(), [&](const Finding& other) {
+            return other.rig == rig && other.subject == finding.subject;
+        });
+        if (!said) findings.push_back(std::move(finding));
     }
+}
+
+std::vector<Finding> allOf(const Patient& patient,
+                           const CommonOptions& common,
+                           const DoctorOptions& options) {
+    std::vector<Finding> findings = examineComputer(patient);
+    bool daemonsSeen = !patient.daemon || patient.daemon->rigSerial.empty();
+    for (const driver::UsbRig& rig : patient.rigs ? *patient.rigs : std::vector<driver::UsbRig>()) {
+        const bool daemons = usedByDaemon(patient, rig);
+        daemonsSeen = daemonsSeen || daemons;
+        add(findings, examineOutside(patient, rig), nameOf(rig));
+        add(findings,
+            daemons ? byDaemon(common, options) : inside(patient, rig, options),
+            nameOf(rig));
+    }
+    if (daemonsSeen) return findings;
+    const std::string& serial = patient.daemon->rigSerial;
+    add(findings, examineUnplugged(*patient.daemon), serial);
+    add(findings, byDaemon(common, options), serial);
     return findings;
 }
 
@@ -144,10 +165,13 @@ void print(const std::vector<Finding>& findings) {
 }  // namespace
 
 Result<void> doctor(const CommonOptions& common, const DoctorOptions& options) {
+    if (!options.profile.empty()) {
+        if (const auto known = readProfile(options.profile); !known) return known.error();
+    }
     const Patient patient{.store = common.store.empty() ? defaultStore() : common.store,
                           .rigs = driver::listUsb(),
                           .daemon = askDaemon(common)};
-    const std::vector<Finding> findings = allOf(patient, options);
+    const std::vector<Finding> findings = allOf(patient, common, options);
     if (common.json) {
         Json list = Json::array();
         for (const Finding& finding : findings) list.push_back(toJson(finding));

@@ -21,7 +21,10 @@ constexpr auto kPause = 500ms;  // before a stream that broke off is asked for a
 }  // namespace
 
 FollowedJob::FollowedJob(const CommonOptions& common, const DaemonClient& client, std::string title)
-    : client_(client), yes_(common.yes), progress_(std::move(title), !common.quiet) {}
+    : client_(client),
+      yes_(common.yes),
+      quiet_(common.quiet),
+      progress_(std::move(title), !common.quiet) {}
 
 Result<void> FollowedJob::begin(const std::string& request) {
     const auto status = client_.get("/api/v1/status");
@@ -51,6 +54,10 @@ void FollowedJob::heed(const StreamEvent& event, const Json& data) {
                         .left = Seconds(data.at("left_s").get<double>())});
     } else if (event.type == "operator") {
         heed({data.at("question"), data.at("wanted")});
+    } else if (event.type == "setback" && !quiet_) {
+        progress_.clear();
+        std::cerr << "setback in " << data.value("bracket", std::string("a bracket")) << ": "
+                  << data.value("message", std::string()) << "\n";
     } else if (event.type == "job") {
         ended_ = data.at("state") != "running";
         if (data.contains("problem")) {

@@ -45,6 +45,7 @@ private:
 
     const DaemonClient& client_;
     bool yes_;
+    bool quiet_;
     Progress progress_;
     std::int64_t id_ = 0;
     std::uint64_t seen_ = 0;            ///< newest event

@@ -83,13 +83,17 @@ std::string calibratedLine(const Json& done, Reference reference) {
            seconds(done, "rig_seconds") + " on the rig";
 }
 
+std::string uncertaintyOf(const Json& done) {
+    const Json& median = done.at("median_relative_uncertainty");
+    if (!median.is_number()) return "none of them above 0";
+    return "median uncertainty " + perCent(median.get<double>()) + " (k = 1)";
+}
+
 std::string measuredLine(const Json& done) {
     return text(done, "name") + ": " + std::to_string(done.at("measured_cells").get<int>()) +
-           " BRDF samples, median uncertainty " +
-           perCent(done.at("median_relative_uncertainty").get<double>()) + " (k = 1), " +
-           seconds(done, "rig_seconds") + " on the rig (planned " +
-           fixed(done.at("planned").at("seconds").get<double>(), 1) + " s), " +
-           seconds(done, "compute_seconds") + " computing; " + text(done, "file");
+           " BRDF samples, " + uncertaintyOf(done) + ", " + seconds(done, "rig_seconds") +
+           " on the rig (planned " + fixed(done.at("planned").at("seconds").get<double>(), 1) +
+           " s), " + seconds(done, "compute_seconds") + " computing; " + text(done, "file");
 }
 
 Json toJson(const CaptureGoal& goal) {

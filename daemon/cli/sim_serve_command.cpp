@@ -9,7 +9,6 @@
 #include "daemon/cli/commands.h"
 #include "daemon/cli/output.h"
 #include "daemon/sim_bench.h"
-#include "proc/formats/file_bytes.h"
 #include "sim/faults/fault_script.h"
 #include "sim/usbip_server.h"
 #include "sim/vhci_cable.h"
@@ -71,10 +70,8 @@ std::string serialOf(sim::LiveRig& rig) {
 /// Empty: nothing goes wrong.
 Result<std::optional<sim::FaultScript>> scriptOf(const SimServeOptions& options) {
     if (options.faults.empty()) return std::optional<sim::FaultScript>();
-    const auto text = proc::readFile(options.faults);
-    if (!text) return text.error();
-    auto script = sim::FaultScript::parse(*text);
-    if (!script) return script.error().in(options.faults.string());
+    auto script = readFaults(options.faults);
+    if (!script) return script.error();
     return std::optional(std::move(*script));
 }
 

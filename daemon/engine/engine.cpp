@@ -173,6 +173,15 @@ Result<void> Engine::place(const PlaceRequest& request) {
     });
 }
 
+Result<std::vector<Finding>> Engine::examine(bool handsOff) {
+    const std::string why = handsOff ? "not asked for" : port_.onlyForJobs();
+    if (!why.empty()) return examineFromAfar(why);
+    auto asked =
+        ask<std::vector<Finding>>([this] { return Result<std::vector<Finding>>(examineNow()); });
+    if (asked || asked.error().kind != ErrorKind::Busy) return asked;
+    return examineFromAfar(asked.error().message);
+}
+
 EngineStatus Engine::status() const {
     const std::scoped_lock lock(mutex_);
     return status_;
@@ -228,6 +237,11 @@ void Engine::tellJob(const JobRecord& job) {
     tell("job", dump(json), true);
 }
 
+void Engine::tellNotices() {
+    const std::string notice = port_.takeNotice();
+    if (!notice.empty()) tell("recording", dump({{"state", "ended"}, {"message", notice}}), true);
+}
+
 void Engine::advance(EngineEvent event, const std::string& detail) {
     const auto to = next(status().state, event);
     if (!to) return;
@@ -244,6 +258,7 @@ void Engine::run(const std::stop_token& stop) {
     while (!stop.stop_requested()) {
         world_.alive();
         tend();
+        tellNotices();
         serveNext();
         runPending(stop);
     }

@@ -21,6 +21,7 @@
 #include "daemon/engine/job.h"
 #include "daemon/engine/rig_port.h"
 #include "daemon/engine/sim_port.h"
+#include "daemon/finding.h"
 #include "daemon/logbook.h"
 #include "daemon/store_lock.h"
 
@@ -58,6 +59,7 @@ struct EngineStatus {
     std::string obstacle;  ///< why there is no rig, or none that may be lit
     std::string placed;    ///< empty: only a person knows
     std::optional<driver::Status> rig{};
+    std::optional<driver::RigInfo> info{};  ///< of the rig that was claimed last
     std::optional<JobStatus> job{};
     std::optional<SessionRecord> session{};
     std::vector<CalibrationDate> calibrations;  ///< newest of each kind, of this rig
@@ -95,6 +97,10 @@ public:
     [[nodiscard]] const RigProfile& profile() const { return profile_; }
     [[nodiscard]] EventLog& events() { return events_; }
     [[nodiscard]] Result<std::vector<RigListing>> rigs() { return port_.list(); }
+    /// The doctor's findings of the rig that the engine has; the first is always `claim`. A rig
+    /// that is idle is asked, and takes two dark frames; while a job runs, and with `handsOff`,
+    /// what is known of it is said.
+    [[nodiscard]] Result<std::vector<Finding>> examine(bool handsOff);
     /// Begins it: once this has returned the job is in the logbook. NoRig when it needs a rig and
     /// there is none.
     Result<JobRecord> submit(const JobRequest& request);
@@ -150,6 +156,7 @@ private:
     // A job that goes on (engine_recovery.cpp).
     [[nodiscard]] Result<driver::Transport*> comeBack(const Error& lost);
     [[nodiscard]] Result<driver::Transport*> lookAgain();
+    [[nodiscard]] std::optional<Error> recordingEnded(const Error& lost) const;
     void resume();
     [[nodiscard]] bool patientSince(Nanoseconds begin) const {
         return Seconds(world_.clock.now() - begin) < world_.patience;
@@ -157,6 +164,9 @@ private:
     [[nodiscard]] Result<void> awaitLight(const Error& why);
     [[nodiscard]] Result<bool> mayLight();
     void pause();
+    // Of the doctor (engine_doctor.cpp).
+    [[nodiscard]] std::vector<Finding> examineNow();
+    [[nodiscard]] std::vector<Finding> examineFromAfar(const std::string& why) const;
     [[nodiscard]] Error noRig() const;
     void runPending(const std::stop_token& stop);
     [[nodiscard]] Result<std::string> runOn(const JobRequest& request, Monitor& monitor);
@@ -169,6 +179,7 @@ private:
     void reserveNumbers();
     void tell(const std::string& type, const std::string& json, bool kept);
     void tellJob(const JobRecord& job);
+    void tellNotices();
     template <class Change>
     void publish(Change change) {
         const std::scoped_lock lock(mutex_);

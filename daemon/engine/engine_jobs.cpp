@@ -4,6 +4,7 @@
 #include "daemon/engine/engine.h"
 #include "daemon/engine/monitor.h"
 #include "daemon/guarded.h"
+#include "driver/replay.h"
 #include "proc/core/log.h"
 #include "proc/core/number_text.h"
 
@@ -14,8 +15,11 @@ constexpr std::uint64_t kReservedSteps = 1 << 16;  // no job takes more captures
 
 }  // namespace
 
-/// The first of the plan steps that are the next job's alone, however this one ends.
+/// The first of the plan steps that are the next job's alone, however this one ends. From a
+/// recording come those of the recorded job, whatever this store has counted.
 Result<std::uint64_t> Engine::reserveSteps() {
+    const driver::Replay* replay = port_.replay();
+    if (const auto recorded = replay ? replay->nextPlanStep() : std::nullopt) return *recorded;
     const std::string key = "plan-step/" + status().serial;
     const Result<std::string> kept = logbook_.setting(key);
     if (!kept) return kept.error();
@@ -40,8 +44,10 @@ Result<std::string> Engine::runOn(const JobRequest& request, Monitor& monitor) {
                          .monitor = monitor};
     Result<std::string> outcome =
         guarded("job " + std::string(name(request.kind)), [&] { return runJob(bench, request); });
-    const auto returned = logbook_.set("plan-step/" + now.serial, std::to_string(*step));
-    if (!returned) log::warning(returned.error().message);
+    if (port_.replay() == nullptr) {
+        const auto returned = logbook_.set("plan-step/" + now.serial, std::to_string(*step));
+        if (!returned) log::warning(returned.error().message);
+    }
     return outcome;
 }
 

@@ -4,6 +4,7 @@
 #include "daemon/engine/engine.h"
 #include "daemon/engine/fault_text.h"
 #include "daemon/engine/monitor.h"
+#include "driver/replay.h"
 #include "proc/core/log.h"
 #include "proc/core/number_text.h"
 
@@ -23,6 +24,15 @@ Error gaveUp(const Error& why, Seconds patience) {
 
 }  // namespace
 
+/// Nothing comes from a recording that is over, or that was left: why the job ends here.
+std::optional<Error> Engine::recordingEnded(const Error& lost) const {
+    const driver::Replay* replay = port_.replay();
+    const auto end = replay ? replay->end() : std::nullopt;
+    if (!end) return std::nullopt;
+    if (lost.message.find(end->message) != std::string::npos) return lost;
+    return Error{lost.kind, lost.message + "; " + end->message, lost.deviceStatus};
+}
+
 /// Or until somebody wants the job to end.
 void Engine::pause() {
     std::unique_lock lock(mutex_);
@@ -33,6 +43,7 @@ void Engine::pause() {
 /// gap, with the reason, when what was found could not be taken up.
 Result<driver::Transport*> Engine::comeBack(const Error& lost) {
     if (monitor_ == nullptr || !monitor_->needsRig()) return lost;
+    if (const auto ended = recordingEnded(lost)) return *ended;
     const bool first = !lostAt_;
     if (first) lostAt_ = world_.clock.now();
     if (!patientSince(*lostAt_)) return gaveUp(lost, world_.patience);
@@ -48,6 +59,7 @@ Result<driver::Transport*> Engine::comeBack(const Error& lost) {
             Result<driver::Transport*> there = lookAgain();
             if (there) return there;
             hinder(there.error());
+            if (const auto ended = recordingEnded(lost)) return *ended;
         }
         pause();
     }

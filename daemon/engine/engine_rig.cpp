@@ -2,6 +2,7 @@
 
 #include "daemon/engine/engine.h"
 #include "daemon/engine/fault_text.h"
+#include "driver/replay.h"
 #include "proc/core/log.h"
 #include "proc/core/number_text.h"
 
@@ -62,11 +63,14 @@ Result<void> Engine::claim() {
         const auto set = logbook_.set(key, std::to_string(static_cast<std::int64_t>(id)));
         if (!set) return set;
     }
-    auto rig = driver::Rig::open(**transport, port_.session().value_or(id));
+    // The one that the recorded host had, in a recording.
+    if (const auto* replay = port_.replay()) id = replay->session().value_or(id);
+    auto rig = driver::Rig::open(**transport, id);
     if (!rig) return rig.error();
     rig_.emplace(std::move(*rig));
     rig_->onLost([this](const Error& lost) { return comeBack(lost); });
     rig_->onBack([this] { resume(); });
+    publish([&](EngineStatus& status) { status.info = rig_->identify(); });
     hinder({});
     publishCalibrations();
     advance(EngineEvent::Claimed);

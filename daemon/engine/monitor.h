@@ -25,6 +25,7 @@ public:
     Result<void> step(const std::string& what) override {
         alive();
         (void)interruptions();
+        engine_.tellNotices();
         tell(what);
         return goOn();
     }

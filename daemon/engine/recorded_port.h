@@ -29,6 +29,16 @@ public:
         transport_.reset();
         inner_->close();
     }
+    [[nodiscard]] const driver::Replay* replay() const override { return inner_->replay(); }
+    [[nodiscard]] std::string onlyForJobs() const override {
+        return "its traffic is recorded, and a replay would wait for the same questions";
+    }
+    /// The recording ends when its disk is full; the rig goes on.
+    [[nodiscard]] std::string takeNotice() override {
+        if (told_ || recorder_->ending().empty()) return inner_->takeNotice();
+        told_ = true;
+        return recorder_->ending();
+    }
     [[nodiscard]] std::string placed() const override { return inner_->placed(); }
     Result<bool> placeMirror(const proc::Wedge& wedge) override {
         return inner_->placeMirror(wedge);
@@ -40,6 +50,7 @@ private:
     std::unique_ptr<RigPort> inner_;
     std::unique_ptr<driver::Recorder> recorder_;
     std::optional<driver::RecordingTransport> transport_;
+    bool told_ = false;  ///< that the recording has ended
 };
 
 }  // namespace gonio::daemon

@@ -22,14 +22,17 @@ public:
                                         .obstacle = {}}};
     }
     [[nodiscard]] Result<driver::Transport*> open() override {
-        session_ = replay_->nextSession();
+        transport_.reset();
         Result<std::unique_ptr<driver::Transport>> opened = replay_->openRig();
         if (!opened) return opened.error();
         transport_ = std::move(*opened);
         return transport_.get();
     }
     void close() override { transport_.reset(); }
-    [[nodiscard]] std::optional<std::uint64_t> session() const override { return session_; }
+    [[nodiscard]] const driver::Replay* replay() const override { return replay_.get(); }
+    [[nodiscard]] std::string onlyForJobs() const override {
+        return "a recording answers only what was asked then";
+    }
     [[nodiscard]] std::string placed() const override { return {}; }
     Result<bool> placeMirror(const proc::Wedge& /*wedge*/) override { return false; }
     void describe(proc::SampleInfo& info) const override { info.extra["rig"] = "replayed"; }
@@ -37,7 +40,6 @@ public:
 private:
     std::unique_ptr<driver::Replay> replay_;
     const std::string serial_;
-    std::optional<std::uint64_t> session_;
     std::unique_ptr<driver::Transport> transport_;
 };
 

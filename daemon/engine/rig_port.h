@@ -13,6 +13,10 @@
 #include "proc/optics/mirror.h"
 #include "proc/table/sample_set.h"
 
+namespace gonio::driver {
+class Replay;
+}
+
 namespace gonio::daemon {
 
 class SimPort;
@@ -34,11 +38,18 @@ public:
     [[nodiscard]] virtual std::string_view kind() const = 0;
     [[nodiscard]] virtual Result<std::vector<RigListing>> list() = 0;
     /// The port keeps the transport until close(). NoRig, Busy and Device errors may pass: try
-    /// again.
+    /// again. Any other stays, and no job waits for the rig.
     [[nodiscard]] virtual Result<driver::Transport*> open() = 0;
     virtual void close() = 0;
-    /// The session that this opening must be claimed with; empty: any.
-    [[nodiscard]] virtual std::optional<std::uint64_t> session() const { return {}; }
+    /// The recording that is played in a rig's place; null: there is a rig, or may be one. For the
+    /// thread that owns the rig.
+    [[nodiscard]] virtual const driver::Replay* replay() const = 0;
+
+    /// Why only jobs may ask the rig; empty: anyone may. From any thread.
+    [[nodiscard]] virtual std::string onlyForJobs() const { return {}; }
+
+    /// What happened to the port itself, once each; empty: nothing.
+    [[nodiscard]] virtual std::string takeNotice() { return {}; }
 
     /// What lies under the rig: "white", "mirror", a file, ...; empty: only a person knows.
     [[nodiscard]] virtual std::string placed() const = 0;

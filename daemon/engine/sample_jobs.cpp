@@ -202,6 +202,7 @@ Result<Json> measure(const JobRun& run) {
         return Error{good.error().kind, good.error().message + "; it is kept as '" + aside + "'"};
     });
     if (!kept) return kept.error();
+    const std::optional<double> median = sample.info.achievedUncertainty;
     return Json{{"schema", "gonio/measure/1"},
                 {"name", run.request().name},
                 {"file", kept->file.string()},
@@ -210,7 +211,7 @@ Result<Json> measure(const JobRun& run) {
                 {"rotation_deg", proc::fileDegrees(run.request().rotation)},
                 {"calibration", loaded->set.id()},
                 {"measured_cells", measuredCells(sample)},
-                {"median_relative_uncertainty", sample.info.achievedUncertainty.value_or(0)},
+                {"median_relative_uncertainty", median ? Json(*median) : Json()},
                 {"chi_square_per_freedom", captured->chiSquarePerFreedom},
                 {"planned", taken->planned},
                 {"achieved", taken->achieved},

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "proc/core/number_text.h"
 #include "proc/optics/cell_grid.h"
@@ -134,6 +135,7 @@ Result<driver::Transport*> SimPort::open() {
     auto door = openSim(state_, store_, cameraUsb_);
     if (!door) return door.error();
     door_ = std::move(*door);
+    if (faults_) door_->usb().play(*std::exchange(faults_, std::nullopt));
     return door_.get();
 }
 

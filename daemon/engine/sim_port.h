@@ -42,11 +42,14 @@ public:
     [[nodiscard]] Result<std::vector<RigListing>> list() override;
     [[nodiscard]] Result<driver::Transport*> open() override;
     void close() override { door_.reset(); }
+    [[nodiscard]] const driver::Replay* replay() const override { return nullptr; }
     [[nodiscard]] std::string placed() const override { return state_.placed; }
     Result<bool> placeMirror(const proc::Wedge& wedge) override;
     void describe(proc::SampleInfo& info) const override;
     [[nodiscard]] SimPort* simulated() override { return this; }
 
+    /// What goes wrong from the next opening on.
+    void play(sim::FaultScript script) { faults_ = std::move(script); }
     /// True: it is another rig from now on, and has to be opened anew. Whatever is wrong with what
     /// is to be placed is said at once, and the rig stays as it was.
     Result<bool> place(const PlaceRequest& request);
@@ -59,7 +62,8 @@ private:
     Store store_;
     SimState state_;
     int cameraUsb_;
-    std::mutex mutex_;  ///< of the serial number, which list() reads
+    std::mutex mutex_;                        ///< of the serial number, which list() reads
+    std::optional<sim::FaultScript> faults_;  ///< not played yet
     std::unique_ptr<sim::InProcessDoor> door_;
 };
 

@@ -39,7 +39,8 @@ Result<driver::Transport*> UsbPort::open() {
         if (opened.error().kind != ErrorKind::NoRig || others.empty()) return opened.error();
         return Error{ErrorKind::NoRig,
                      "rig " + *selection_.serial + " is not there; refused is " + others +
-                         ": plug the first in again, or restart goniod for the other"};
+                         ": plug " + *selection_.serial +
+                         " in, or restart goniod for another: --rig usb:SERIAL"};
     }
     transport_ = std::move(*opened);
     selection_.serial = transport_->strings().serial;

@@ -90,7 +90,7 @@ protected:
 
 TEST_F(DoctorInside, SoundRigHasNoAilmentAndIsGivenBackDark) {
     const auto findings = all();
-    ASSERT_EQ(findings.size(), 7U);
+    ASSERT_EQ(findings.size(), 9U);
     for (const Finding& one : findings) {
         EXPECT_EQ(one.verdict, Verdict::Ok) << one.subject << ": " << one.seen;
         EXPECT_EQ(one.cure, "") << one.subject;
@@ -146,7 +146,8 @@ TEST_F(DoctorInside, RigThatSendsNoFrameFailsItsSelfTestInTime) {
     rig.streamDead = true;
     const Nanoseconds before = rig.door.clock().now();
     EXPECT_EQ(seen("self-test").verdict, Verdict::Fail);
-    EXPECT_LT(rig.door.clock().now() - before, std::chrono::seconds(60));
+    // A daemon that is busy with it for longer is killed by its watchdog.
+    EXPECT_LT(rig.door.clock().now() - before, std::chrono::seconds(10));
     EXPECT_EQ(seen("noise").verdict, Verdict::Note);
 }
 

@@ -68,6 +68,9 @@ TEST_F(Doctor, VerdictsHaveTheWordsOfTheSchema) {
     EXPECT_EQ(name(Verdict::Note), "note");
     EXPECT_EQ(name(Verdict::Warn), "warn");
     EXPECT_EQ(name(Verdict::Fail), "fail");
+    for (const Verdict one : {Verdict::Ok, Verdict::Note, Verdict::Warn, Verdict::Fail})
+        EXPECT_EQ(parseVerdict(name(one)), one);
+    EXPECT_FALSE(parseVerdict("good"));
 }
 
 TEST_F(Doctor, LittleUsbMemoryIsAWarningThatNamesTheFile) {
@@ -94,6 +97,12 @@ TEST_F(Doctor, MissingDaemonOrUsbIsAWarning) {
     EXPECT_NE(finding("daemon").cure.find("goniod"), std::string::npos);
     patient.rigs = Error{ErrorKind::NoRig, "libusb: no USB"};
     EXPECT_EQ(finding("usb").verdict, Verdict::Warn);
+}
+
+TEST_F(Doctor, DaemonThatIsHinderedIsAWarningThatSaysWhy) {
+    patient.daemon->obstacle = "two rigs: SIM-0042, SIM-0043";
+    EXPECT_EQ(finding("daemon").verdict, Verdict::Warn);
+    EXPECT_NE(finding("daemon").seen.find("SIM-0042, SIM-0043"), std::string::npos);
 }
 
 TEST_F(Doctor, KernelWithoutHidrawIsAWarning) {

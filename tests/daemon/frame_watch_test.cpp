@@ -65,6 +65,25 @@ TEST_F(FrameWatchTest, ARepeatedPictureIsOddAlsoInAnotherBracket) {
     EXPECT_FALSE(verdict.next.empty());
 }
 
+// By a simulated rig, whose noise goes by the plan: the frame before was the last sound one.
+TEST_F(FrameWatchTest, TheSameFrameOfThePlanInAnotherAttemptIsNoRepeat) {
+    FrameWatch watch(noise);
+    watch.begin();
+    Frame frame = take(kLit);
+    frame.captureId = 112 << 16 | 1;
+    ASSERT_FALSE(watch.see(kState, frame));
+    EXPECT_TRUE(watch.see(kState, frame)) << "it came twice in one attempt";
+    watch.begin();
+    frame.captureId = 112 << 16 | 2;
+    EXPECT_FALSE(watch.see(kState, frame));
+    Frame next = frame;
+    next.index = 1;
+    EXPECT_TRUE(watch.see(kState, next)) << "another frame of the plan";
+    next = frame;
+    next.captureId = 113 << 16 | 1;
+    EXPECT_TRUE(watch.see(kState, next)) << "another step of the plan";
+}
+
 TEST_F(FrameWatchTest, ALitFrameWithoutLightIsOddWhereWhiteTells) {
     FrameWatch watch(noise);
     watch.expect(darks, white);

@@ -7,6 +7,7 @@
 #include <functional>
 #include <utility>
 
+#include "daemon/frame_watch.h"
 #include "daemon/sequencer.h"
 #include "proc/models/spec.h"
 #include "sim/in_process.h"
@@ -19,16 +20,20 @@ using namespace std::chrono_literals;
 constexpr Window kWindow{.x = 512, .y = 384, .size = {256, 256}};
 constexpr State kFirst{1, Band::G}, kSecond{2, Band::R};
 
-/// A rig with a matt grey under it, whose light does not drift.
+sim::Placement sample(const std::string& model) {
+    return {.role = sim::Role::Sample, .surface = std::move(*proc::makeModel(model)), .wedge = {}};
+}
+sim::Placement matt(const std::string& albedo) { return sample("lambert,albedo=" + albedo); }
+
+/// A rig with a surface under it, a matt grey at first, whose light does not drift.
 class Bed {
 public:
-    explicit Bed(const std::string& script = {}) {
+    explicit Bed(const std::string& script = {}) : Bed(matt("0.5"), script) {}
+    explicit Bed(sim::Placement placement, const std::string& script = {}) {
         auto known = readProfile(defaultProfile());
         EXPECT_TRUE(known) << known.error().message;
         profile = std::move(*known);
-        first.device().place({.role = sim::Role::Sample,
-                              .surface = std::move(*proc::makeModel("lambert,albedo=0.5")),
-                              .wedge = {}});
+        first.device().place(std::move(placement));
         auto opened = driver::Rig::open(first, 7);
         EXPECT_TRUE(opened) << opened.error().message;
         rig.emplace(std::move(*opened));
@@ -42,6 +47,7 @@ public:
     /// Two states of four exposures of two frames.
     Result<void> take() {
         Sequencer sequencer(*rig, profile, nextPlanStep, attendance);
+        if (darks) sequencer.watch().expect(*darks, white);
         std::vector<KnownShot> shots;
         for (const State state : {kFirst, kSecond}) {
             for (const Microseconds exposure : {80us, 320us, 160us, 640us})
@@ -90,7 +96,19 @@ public:
         return names;
     }
 
+    /// From now on a lit frame must show light: `rates` is what white gives.
+    void expectLight(WhiteRates rates) {
+        Sequencer sequencer(*rig, profile, nextPlanStep, attendance);
+        profile.exposures = {80us, 320us, 160us, 640us};
+        auto library = sequencer.darks(4, [] { return Result<void>(); });
+        ASSERT_TRUE(library) << library.error().message;
+        darks = std::move(*library);
+        white = std::move(rates);
+    }
+
     RigProfile profile;
+    std::optional<proc::DarkLibrary> darks;
+    WhiteRates white;
     sim::InProcessDoor first{{}};
     std::vector<std::unique_ptr<sim::InProcessDoor>> doors;
     std::optional<driver::Rig> rig;  // ends before its doors
@@ -179,8 +197,85 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"ReflexOfSomebody", "on frame 7 saturating reflex", "reflex"},
         Case{"InterlockOpenedForAWhile", "on frame 3 open interlock for 2s", "suspended"},
         Case{"TooWarmForAWhile", "on frame 11 overheat for 3s", "suspended"},
-        Case{"PowerLost", "on frame 5 unplug\nat 3s plug rebooted", "new-boot"}),
+        Case{"PowerLost", "on frame 5 unplug\nat 3s plug rebooted", "new-boot"},
+        Case{"PowerLostAfterTheFirstFrame", "on frame 2 unplug\nat 3s plug rebooted", "new-boot"}),
     [](const auto& one) { return one.param.name; });
+
+// The bracket is taken again by the same plan steps, so that its first frames are bit for bit those
+// of the first attempt: they are no repeats. Frame 1 has none before it.
+TEST(SetbacksOnSim, PictureThatComesAgainOnceIsOneSetbackWhereverInABracketItIs) {
+    Bed undisturbed;
+    ASSERT_TRUE(undisturbed.take());
+    for (const int frame : {2, 3, 5, 8, 9, 10, 16}) {
+        SCOPED_TRACE(frame);
+        Bed bed("on frame " + std::to_string(frame) + " previous frame again");
+        const auto taken = bed.take();
+        ASSERT_TRUE(taken) << taken.error().message;
+        EXPECT_EQ(bed.causes(), std::vector<std::string>{"repeated"});
+        expectSame(bed, undisturbed);
+    }
+}
+
+/// Electrons per second and pixel of a white tile, by LED and band.
+WhiteRates ratesOfWhite() {
+    Bed bed(matt("0.99"));
+    EXPECT_TRUE(bed.take());
+    WhiteRates rates(4);
+    for (const auto& [frames, state] :
+         {std::pair(bed.frames[0], kFirst), {bed.frames[1], kSecond}}) {
+        const Frame& frame = frames.front();
+        double sum = 0;
+        for (const std::uint16_t dn : frame.pixels.pixels()) sum += dn - frame.blackLevel;
+        rates[static_cast<std::size_t>(state.led)][index(state.band)] =
+            bed.profile.noise.electronsPerDn * sum /
+            static_cast<double>(frame.pixels.size().pixels()) / frame.exposure.seconds();
+    }
+    return rates;
+}
+
+struct Surface {
+    std::string name;
+    sim::Placement placement;
+};
+
+class NoAlarm : public testing::TestWithParam<Surface> {};
+
+// What a sound rig sees of it is no setback, whatever the noise: 64 frames each.
+TEST_P(NoAlarm, OfASoundRig) {
+    Bed bed(GetParam().placement);
+    const WhiteRates white = ratesOfWhite();
+    ASSERT_GT(white[1][index(Band::G)], 1e5) << "else nothing would be called dark";
+    bed.expectLight(white);
+    for (int run = 0; run < 4; ++run) {
+        const auto taken = bed.take();
+        ASSERT_TRUE(taken) << taken.error().message;
+    }
+    EXPECT_TRUE(bed.setbacks.empty()) << bed.setbacks.front().message;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    OnSim,
+    NoAlarm,
+    // The blackest coatings that are sold send back 2e-4 to 4e-4 of the light.
+    testing::Values(Surface{"Blackest", matt("0.0003")},
+                    Surface{"LightTrap",
+                            {.role = sim::Role::Zero, .surface = nullptr, .wedge = {}}},
+                    Surface{"BlackTile", matt("0.02")},
+                    Surface{"Mirror", {.role = sim::Role::Mirror, .surface = nullptr, .wedge = {}}},
+                    Surface{"Polished", sample("ggx,alpha=0.02,f0=0.9")},
+                    Surface{"White", matt("0.99")}),
+    [](const auto& one) { return one.param.name; });
+
+TEST(SetbacksOnSim, StateThatStaysWithoutLightIsTakenForWhatLiesThereWithAWarning) {
+    Bed bed("with chance 1 per frame unlit led");
+    bed.expectLight(ratesOfWhite());
+    const auto taken = bed.take();
+    ASSERT_TRUE(taken) << taken.error().message;
+    ASSERT_FALSE(bed.setbacks.empty());
+    for (const std::string& cause : bed.causes()) EXPECT_EQ(cause, "unlit");
+    const proc::Verdict verdict = framesVerdict(bed.odd);
+    EXPECT_EQ(verdict.grade, proc::Grade::Warned) << verdict.evidence;
+}
 
 TEST(SetbacksOnSim, CableBumpIsNoneOfTheBracketsBusiness) {
     Bed undisturbed;

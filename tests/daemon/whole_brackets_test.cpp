@@ -80,6 +80,8 @@ TEST_F(WholeBracketsOnSim, FrameThatIsOddOnceCostsOneMoreAttempt) {
     EXPECT_EQ(attempts, 2);
     EXPECT_EQ(causes(), std::vector<std::string>{"repeated"});
     EXPECT_EQ(setbacks.front().bracket, "LED 1 g");
+    EXPECT_NE(setbacks.front().message.find("; the bracket is taken again"), std::string::npos)
+        << setbacks.front().message;
     ASSERT_EQ(brackets->oddFrames().size(), 1U);
     EXPECT_TRUE(brackets->oddFrames().front().dropped);
 }
@@ -94,6 +96,10 @@ TEST_F(WholeBracketsOnSim, FrameThatIsOddTwiceIsRefusedWithItsEvidence) {
     EXPECT_EQ(refused.error().kind, ErrorKind::Quality);
     EXPECT_NE(refused.error().message.find("frame 101 is bit for bit"), std::string::npos)
         << refused.error().message;
+    EXPECT_NE(refused.error().message.find(kOddFramesCure), std::string::npos)
+        << "what to do next: " << refused.error().message;
+    EXPECT_NE(setbacks.back().message.find(", once more"), std::string::npos)
+        << setbacks.back().message;
     EXPECT_EQ(causes(), (std::vector<std::string>{"repeated", "repeated"}));
 }
 

@@ -63,6 +63,24 @@ private:
 
 class TwoRigs : public testing::Test {
 protected:
+    /// The daemon's status says in one line why, with all of `words`, and so does the doctor.
+    void expectNoneTaken(const std::string& which, const std::vector<std::string>& words) {
+        first.serve(which);
+        std::string obstacle;
+        ASSERT_TRUE(test::waitUntil([&] {
+            const Json status = first.ask("status");
+            if (status["rig"]["obstacle"].is_string()) obstacle = status["rig"]["obstacle"];
+            return !obstacle.empty();
+        }));
+        const std::string claim = first.ask("doctor")["findings"][0]["seen"];
+        for (const std::string& word : words) {
+            EXPECT_NE(obstacle.find(word), std::string::npos) << obstacle;
+            EXPECT_NE(claim.find(word), std::string::npos) << claim;
+        }
+        EXPECT_EQ(obstacle.find('\n'), std::string::npos) << obstacle;
+        EXPECT_EQ(first.ask("status")["rig"]["serial"], nullptr);
+        EXPECT_EQ(first.endDaemon(), 0);
+    }
     MockBus bus;
     Bench first{bus, "SIM-0042", 1}, second{bus, "SIM-0043", 2};
 };
@@ -95,18 +113,11 @@ TEST_F(TwoRigs, MeasureAtTheSameTimeEachForItsOwnDaemon) {
 }
 
 TEST_F(TwoRigs, WithoutASerialNumberNoneIsTakenAndBothAreNamed) {
-    first.serve("usb");
-    std::string obstacle;
-    ASSERT_TRUE(test::waitUntil([&] {
-        const Json status = first.ask("status");
-        if (status["rig"]["obstacle"].is_string()) obstacle = status["rig"]["obstacle"];
-        return !obstacle.empty();
-    }));
-    for (const Bench* bench : {&first, &second}) {
-        EXPECT_NE(obstacle.find(bench->serial), std::string::npos) << obstacle;
-    }
-    EXPECT_EQ(first.ask("status")["rig"]["serial"], nullptr);
-    EXPECT_EQ(first.endDaemon(), 0);
+    expectNoneTaken("usb", {"SIM-0042", "SIM-0043", "usb:"});
+}
+
+TEST_F(TwoRigs, OfAWrongSerialNumberNoneIsTakenAndAllAreNamed) {
+    expectNoneTaken("usb:SIM-0044", {"SIM-0042", "SIM-0043", "SIM-0044"});
 }
 
 }  // namespace

@@ -141,12 +141,15 @@ TEST_F(Recording, OfACaptureWithFaultsGivesTheSameFramesAnomaliesAndErrors) {
         EXPECT_NE(seen.text.find("lost chunk"), std::string::npos) << seen.text;
         auto replay = Replay::open(file_);
         ASSERT_TRUE(replay) << replay.error().message;
-        EXPECT_EQ((*replay)->nextSession(), kSession);
+        EXPECT_FALSE((*replay)->session());
         auto transport = (*replay)->openRig();
         ASSERT_TRUE(transport);
+        EXPECT_EQ((*replay)->session(), kSession);
+        EXPECT_EQ((*replay)->nextPlanStep(), 1U);
         const Story again = hostOf(**transport);
         EXPECT_EQ(again.text, seen.text);
         EXPECT_EQ(again.pictures, seen.pictures);
+        EXPECT_EQ((*replay)->nextPlanStep(), std::nullopt) << "all have been played";
     }
 }
 
@@ -267,12 +270,30 @@ TEST_F(Recording, SaysWhereTheHostDoesSomethingElse) {
     auto transport = (*replay)->openRig();
     const Story other = hostOf(**transport, kSession, 9);
     EXPECT_NE(other.text.find("replay: record "), std::string::npos) << other.text;
-    EXPECT_NE(other.text.find("wanted: write 20 88 77 66 55 "), std::string::npos) << other.text;
-    EXPECT_NE(other.text.find("; seen: write 20 88 77 66 55 "), std::string::npos) << other.text;
+    EXPECT_NE(other.text.find("wanted: write ARM, sequence 4; seen: write ARM, sequence 4; byte "
+                              "11: wanted 01 00 00 00 00 00 04 00 .., seen 09 00 "),
+              std::string::npos)
+        << other.text;
+    EXPECT_NE(other.text.find("; do the same jobs in the same order"), std::string::npos);
     EXPECT_TRUE(other.pictures.empty());
     const auto after = (*transport)->getFeature(1);
     ASSERT_FALSE(after);
     EXPECT_EQ(after.error().kind, ErrorKind::Device);
+    ASSERT_TRUE((*replay)->end());
+    EXPECT_EQ((*replay)->end()->message, after.error().message);
+    EXPECT_EQ((*replay)->openRig().error().message, after.error().message);
+}
+
+TEST_F(Recording, SaysOfAnotherRequestWhatItIs) {
+    (void)recorded(1);
+    auto replay = Replay::open(file_);
+    ASSERT_TRUE(replay);
+    auto transport = (*replay)->openRig();
+    const auto other = (*transport)->resetStream();
+    ASSERT_FALSE(other);
+    EXPECT_NE(other.error().message.find("wanted: get feature 01; seen: reset the stream; do "),
+              std::string::npos)
+        << other.error().message;
 }
 
 TEST_F(Recording, OfTheFirstMomentsIsRefusedWhereverItIsCutOffOrDamaged) {
@@ -331,6 +352,45 @@ TEST_F(Recording, ThatIsNoneIsNotContinued) {
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().kind, ErrorKind::File);
     EXPECT_EQ(bytes(), "a letter to a friend");
+}
+
+TEST_F(Recording, ThatAPowerCutHasTornIsContinuedAfterItsLastWholeRecord) {
+    (void)recorded(1, 40);
+    const std::string whole = bytes();
+    const auto put = [&](const std::string& bytes) {
+        std::ofstream(file_, std::ios::binary | std::ios::trunc) << bytes;
+    };
+    std::string blank = whole, damaged = whole;
+    blank.append(5000, '\0');
+    damaged.back() = static_cast<char>(damaged.back() ^ 1);
+    const std::size_t closing = 4 + 26 + 4;  // the last record is that of the close
+    const std::string without = whole.substr(0, whole.size() - closing);
+    const std::vector<std::pair<std::string, std::string>> torn{
+        {whole.substr(0, whole.size() - 1), without},
+        {without + whole.substr(without.size(), 3), without},
+        {without + whole.substr(without.size(), 20), without},
+        {damaged, without},
+        {blank, whole},
+        {whole.substr(0, 9), whole.substr(0, kRecordingHeaderBytes)},
+        {"", whole.substr(0, kRecordingHeaderBytes)}};
+    for (const auto& [found, kept] : torn) {
+        SCOPED_TRACE(found.size());
+        put(found);
+        const auto recorder = Recorder::open(file_);
+        ASSERT_TRUE(recorder) << recorder.error().message;
+        EXPECT_TRUE(bytes() == kept) << bytes().size() << " of " << kept.size();
+        recordRefusal(**recorder, {ErrorKind::NoRig, "not there"}, Nanoseconds(5));
+        EXPECT_TRUE(Replay::open(file_));
+    }
+}
+
+TEST_F(Recording, ThatIsDamagedInTheMiddleIsNotContinuedAndKept) {
+    (void)recorded(1, 40);
+    std::string damaged = bytes();
+    damaged[damaged.size() / 2] = static_cast<char>(damaged[damaged.size() / 2] ^ 1);
+    std::ofstream(file_, std::ios::binary | std::ios::trunc) << damaged;
+    EXPECT_FALSE(Recorder::open(file_));
+    EXPECT_TRUE(bytes() == damaged);
 }
 
 TEST_F(Recording, EndsWhereTheDiskIsFullAndTheRunGoesOn) {

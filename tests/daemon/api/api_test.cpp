@@ -132,6 +132,31 @@ TEST_F(ApiOnSim, StatusSaysWhatIsSo) {
     EXPECT_EQ(json["daemon"]["newest_event"], engine->events().newest());
 }
 
+TEST_F(ApiOnSim, DoctorSeesTheRigThatTheDaemonHas) {
+    const Json json = documentOf(get("doctor"), "doctor");
+    std::vector<std::string> subjects;
+    for (const Json& finding : json["findings"]) {
+        subjects.push_back(finding["subject"]);
+        EXPECT_EQ(finding["rig"], "SIM-0001");
+        EXPECT_EQ(finding["verdict"], "ok") << finding;
+        EXPECT_EQ(finding["cure"], nullptr) << finding;
+    }
+    const std::vector<std::string> wanted{"claim",
+                                          "protocol",
+                                          "identity",
+                                          "clock",
+                                          "temperature",
+                                          "interlock",
+                                          "self-test",
+                                          "noise",
+                                          "counters",
+                                          "link"};
+    EXPECT_EQ(subjects, wanted);
+    const Json left = documentOf(get("doctor", {{"hands_off", "true"}}), "doctor");
+    EXPECT_EQ(left["findings"][6]["verdict"], "note") << left;
+    expectProblem(get("doctor", {{"hands_off", "perhaps"}}), 400, ErrorKind::Usage, {"perhaps"});
+}
+
 TEST_F(ApiOnSim, RigsAreListed) {
     const Json json = documentOf(get("rigs"), "rigs");
     ASSERT_EQ(json["rigs"].size(), 1U);

@@ -324,6 +324,25 @@ TEST(OpenApi, HasExactlyTheRoutesOfTheApiAndTheEvents) {
     EXPECT_EQ(described, wanted);
 }
 
+TEST(OpenApi, NamesEveryEventThatTheEngineTellsAndTheDaemonsPageItsData) {
+    const std::string described =
+        openApi()["paths"]["/api/v1/events"]["get"]["responses"]["200"]["description"];
+    const std::string page = test::textOf(GONIO_SOURCE_DIR "/docs/daemon.md");
+    const std::regex told("tell\\(\\s*\"([a-z-]+)\"");
+    std::set<std::string> types;
+    for (const auto& file :
+         std::filesystem::directory_iterator(GONIO_SOURCE_DIR "/daemon/engine")) {
+        const std::string text = test::textOf(file.path());
+        for (std::sregex_iterator i(text.begin(), text.end(), told), end; i != end; ++i)
+            types.insert((*i)[1]);
+    }
+    EXPECT_EQ(types.size(), 10U);
+    for (const std::string& type : types) {
+        EXPECT_TRUE(std::regex_search(described, std::regex("\\b" + type + "\\b"))) << type;
+        EXPECT_NE(page.find("\n| `" + type + "` |"), std::string::npos) << type;
+    }
+}
+
 TEST(OpenApi, DescribesEveryNameOfAPathAndRefersToSchemasThatAreThere) {
     const Json document = openApi();
     EXPECT_EQ(document["openapi"], "3.1.0");

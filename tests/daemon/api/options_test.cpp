@@ -24,9 +24,10 @@ protected:
 const std::string kSchema = "schema = \"gonio/goniod/1\"\n";
 
 TEST_F(DaemonOptionsFile, SaysWhereEverythingIs) {
-    const auto options = read(kSchema +
-                              "rig = \"usb:MD-7\"\nstore = \"/s\"\nsocket = \"/s/x.sock\"\n"
-                              "profile = \"/p.toml\"\nrecord = \"/r\"\ncomeback_seconds = 90\n");
+    const auto options =
+        read(kSchema +
+             "rig = \"usb:MD-7\"\nstore = \"/s\"\nsocket = \"/s/x.sock\"\n"
+             "profile = \"/p.toml\"\nrecord = \"/r\"\nfaults = \"/f\"\ncomeback_seconds = 90\n");
     ASSERT_TRUE(options) << options.error().message;
     EXPECT_EQ(options->rig, "usb:MD-7");
     EXPECT_EQ(options->store, "/s");
@@ -34,6 +35,7 @@ TEST_F(DaemonOptionsFile, SaysWhereEverythingIs) {
     EXPECT_EQ(options->profile, "/p.toml");
     EXPECT_EQ(options->comebackSeconds, 90);
     EXPECT_EQ(options->record, "/r");
+    EXPECT_EQ(options->faults, "/f");
 }
 
 TEST_F(DaemonOptionsFile, EveryKeyMayBeAbsent) {
@@ -77,6 +79,23 @@ TEST(RigChoice, IsTheSimulatedOneAnyOnUsbOrOneOfThem) {
     EXPECT_EQ(parseRigChoice("usb:a:b")->serial, "a:b");
     EXPECT_EQ(parseRigChoice("replay:/a b")->replay, "/a b");
     EXPECT_TRUE(parseRigChoice("usb")->replay.empty());
+}
+
+TEST(RigChoice, RecordingThatIsPlayedIsNotRecordedInto) {
+    const test::TempFolder folder;
+    const auto played = folder / "played";
+    std::ofstream(played.string()) << "r";
+    std::filesystem::create_symlink(played, folder / "link");
+    const RigChoice replay{.replay = played};
+    for (const auto& same : {played, folder / "link", folder / "." / "played"}) {
+        const auto refused = checkRecord(replay, same);
+        ASSERT_FALSE(refused) << same;
+        EXPECT_EQ(refused.error().kind, ErrorKind::Usage);
+        EXPECT_NE(refused.error().message.find(same.string()), std::string::npos);
+    }
+    EXPECT_TRUE(checkRecord(replay, folder / "another"));
+    EXPECT_TRUE(checkRecord(replay, {}));
+    EXPECT_TRUE(checkRecord(RigChoice{}, played));
 }
 
 TEST(RigChoice, AnythingElseIsAUsageErrorThatSaysWhatIsWanted) {

@@ -252,6 +252,13 @@ TEST_F(BadInput, DaemonRefusesWhatItCannotBeTold) {
     expectRefused(gonio.daemon({"--rig", "sim", "--socket", "/" + std::string(200, 'x')}),
                   kUsage,
                   {"--socket", "107 bytes"});
+    expectRefused(gonio.daemon({"--rig", "usb", "--faults", "f"}), kUsage, {"--faults", "sim"});
+    const std::string faults = file("faults", "at 1s explode\n");
+    expectRefused(
+        gonio.daemon({"--rig", "sim", "--faults", faults}), kFile, {faults, "line 1", "explode"});
+    expectRefused(gonio.daemon({"--rig", "sim", "--record", faults}),
+                  kFile,
+                  {faults, "no recording", "another file"});
     const std::string config = file("goniod.toml", "schema = \"gonio/goniod/1\"\nrigs = \"sim\"\n");
     expectRefused(gonio.daemon({"--config", config}), kFile, {config, "'rigs'"});
 }
@@ -271,6 +278,7 @@ TEST_F(BadInput, BrokenProfileIsNamedWithItsKey) {
                   {profile, "sensor.electrons_per_dn"});
     const std::string torn = file("torn.toml", "name = \n");
     expectRefused(gonio.daemon({"--rig", "sim", "--profile", torn}), kFile, {torn});
+    expectRefused(gonio({"doctor", "--profile", torn}), kFile, {torn});
 }
 
 }  // namespace

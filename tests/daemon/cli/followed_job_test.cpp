@@ -62,6 +62,33 @@ data: {"state":")" +
         << ran.err;
 }
 
+TEST_F(WithScriptedDaemon, SetbackIsSaidWithItsBracket) {
+    const std::string setback =
+        "event: setback\ndata: {\"job\":7,\"bracket\":\"LED 1 g\",\"cause\":\"repeated\","
+        "\"message\":\"frame 4 is bit for bit the picture before\"}";
+    const std::string status = R"({"daemon":{"newest_event":0},"job":{"id":7,"question":null}})";
+    daemon.play({.events = {progress(1), setback, kDone}, .status = status, .job = kDocument});
+    const Ran ran = calibrate();
+    EXPECT_EQ(ran.exitCode, 0) << ran.err;
+    EXPECT_NE(ran.err.find("setback in LED 1 g: frame 4 is bit for bit the picture before\n"),
+              std::string::npos)
+        << ran.err;
+}
+
+TEST_F(WithScriptedDaemon, SampleWithoutLightIsNotSaidToBeExact) {
+    const std::string document =
+        R"({"problem":null,"message":null,"result":{"name":"x","measured_cells":5,)"
+        R"("median_relative_uncertainty":null,"rig_seconds":2,"planned":{"seconds":1.9},)"
+        R"("compute_seconds":7,"qc":[],"file":"x.gonio"}})";
+    daemon.play({.events = {kDone},
+                 .status = R"({"daemon":{"newest_event":0},"job":{"id":7,"question":null}})",
+                 .job = document});
+    const Ran ran = gonio({"measure", "x"});
+    EXPECT_EQ(ran.exitCode, 0) << ran.err;
+    EXPECT_NE(ran.out.find("x: 5 BRDF samples, none of them above 0, "), std::string::npos)
+        << ran.out;
+}
+
 TEST_F(WithScriptedDaemon, JobIsFollowedWithoutAStreamToo) {
     daemon.play({.refusesStreams = true, .job = kDocument});
     const Ran ran = calibrate();

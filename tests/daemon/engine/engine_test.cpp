@@ -3,6 +3,8 @@
 #include "daemon/engine/engine.h"
 
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <barrier>
@@ -66,41 +68,234 @@ TEST_F(EngineOnRig, JobRunsThenComputesThenTheRigIsIdle) {
     EXPECT_TRUE(waitUntil([&] { return !port.cable.lit(); }));
 }
 
-/// What a check of the white says, by an engine of its own on `rig`.
-Json whiteVerdict(RigPort& rig) {
+const JobRequest kWhiteCheck{.kind = JobKind::VerifyWhite, .limit = 1};
+
+/// A job by an engine of its own on `rig`, in a store that has counted so many plan steps. It would
+/// wait ten minutes for its rig, by a clock that stands.
+JobRecord jobOn(RigPort& rig, const JobRequest& request = kWhiteCheck, int steps = 0) {
     const test::TempFolder store;
     calibrate(store.path());
-    RunningEngine engine(store.path(), rig);
+    if (steps > 0) {
+        auto used = Logbook::open(store.path());
+        EXPECT_TRUE(used->set("plan-step/SIM-0001", std::to_string(steps)));
+    }
+    RunningEngine engine(store.path(), rig, 600s);
     engine.await(EngineState::Idle);
-    Watcher watcher(*engine);
-    const auto job = engine->submit({.kind = JobKind::VerifyWhite, .limit = 1});
+    const auto job = engine->submit(request);
     EXPECT_TRUE(job) << job.error().message;
-    watcher.until("job", {{"state", "done"}});
+    EXPECT_TRUE(waitUntil([&] { return !engine->status().job; })) << engine->status().obstacle;
     engine.end();
     auto book = Logbook::open(store.path());
     const auto found = book->job(job ? job->id : 0);
-    return found ? Json::parse(found->result) : Json();
+    return found ? *found : JobRecord{};
 }
 
-TEST_F(EngineOnRig, RecordingInTheRigsPlaceGivesTheSameVerdict) {
-    const auto file = folder / "traffic";
-    Json seen;
+Json verdictOf(const JobRecord& job) {
+    EXPECT_EQ(job.state, JobState::Done) << (job.error ? job.error->message : "");
+    return Json::parse(job.result, nullptr, false);
+}
+
+/// A check of the white, recorded.
+JobRecord recordedJob(const std::filesystem::path& file, int steps = 0) {
+    auto real = std::make_unique<test::TestPort>();
+    real->cable.device().place({.role = sim::Role::Sample,
+                                .surface = std::move(*proc::makeModel("lambert,albedo=0.9")),
+                                .wedge = {}});
+    auto recorder = driver::Recorder::open(file);
+    EXPECT_TRUE(recorder) << recorder.error().message;
+    RecordedPort recorded(std::move(real), std::move(*recorder));
+    return jobOn(recorded, kWhiteCheck, steps);
+}
+
+std::unique_ptr<ReplayPort> replayOf(const std::filesystem::path& file) {
+    auto replay = driver::Replay::open(file);
+    EXPECT_TRUE(replay) << replay.error().message;
+    return replay ? std::make_unique<ReplayPort>(std::move(*replay)) : nullptr;
+}
+
+TEST_F(EngineOnRig, RecordingOfAUsedStoreGivesTheSameVerdictInAnotherAndSoDoesARecordingOfThat) {
+    const Json seen = verdictOf(recordedJob(folder / "first", 5 * 65536));
+    EXPECT_EQ(seen["schema"], "gonio/verify-white/1");
     {
-        auto real = std::make_unique<test::TestPort>();
-        real->cable.device().place({.role = sim::Role::Sample,
-                                    .surface = std::move(*proc::makeModel("lambert,albedo=0.9")),
-                                    .wedge = {}});
+        auto recorder = driver::Recorder::open(folder / "second");
+        ASSERT_TRUE(recorder) << recorder.error().message;
+        RecordedPort again(replayOf(folder / "first"), std::move(*recorder));
+        EXPECT_EQ(again.list()->front().serial, "SIM-0001");
+        EXPECT_EQ(verdictOf(jobOn(again)), seen);
+    }
+    EXPECT_EQ(verdictOf(jobOn(*replayOf(folder / "second"), kWhiteCheck, 77)), seen);
+}
+
+TEST_F(EngineOnRig, ReplayThatTheJobLeavesEndsItAtOnceWithTheFirstDifference) {
+    (void)recordedJob(folder / "traffic");
+    const auto replayed = replayOf(folder / "traffic");
+    const JobRecord other = jobOn(*replayed, {.kind = JobKind::CalibrateDark});
+    ASSERT_TRUE(other.error) << name(other.state);
+    EXPECT_EQ(other.state, JobState::Interrupted);
+    EXPECT_NE(other.error->message.find("replay: record "), std::string::npos);
+    EXPECT_NE(other.error->message.find("wanted: write "), std::string::npos);
+    EXPECT_NE(other.error->message.find("same jobs in the same order"), std::string::npos);
+    const auto after = replayed->open();
+    ASSERT_FALSE(after);
+    EXPECT_NE(other.error->message.find(after.error().message), std::string::npos)
+        << "no opening is used up after it: " << after.error().message;
+}
+
+TEST_F(EngineOnRig, ReplayThatIsOverEndsTheJobAtOnce) {
+    const auto file = folder / "traffic";
+    (void)recordedJob(file);
+    std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
+    ASSERT_TRUE(driver::Recorder::open(file)) << "what is torn is cut off";
+    const JobRecord job = jobOn(*replayOf(file));
+    ASSERT_TRUE(job.error) << name(job.state);
+    EXPECT_EQ(job.state, JobState::Interrupted);
+    EXPECT_NE(job.error->message.find("here the recording of this opening ends"), std::string::npos)
+        << job.error->message;
+}
+
+/// The doctor's findings of the engine's rig, by subject.
+std::map<std::string, Finding> examined(RunningEngine& engine, bool handsOff = false) {
+    const auto findings = engine->examine(handsOff);
+    EXPECT_TRUE(findings) << findings.error().message;
+    std::map<std::string, Finding> bySubject;
+    if (!findings) return bySubject;
+    EXPECT_EQ(findings->front().subject, "claim");
+    for (const Finding& one : *findings) EXPECT_TRUE(bySubject.emplace(one.subject, one).second);
+    return bySubject;
+}
+
+TEST_F(EngineOnRig, RigThatIsIdleIsExaminedAndTheJobsStepsAreLeft) {
+    RunningEngine engine(folder.path(), port);
+    engine.await(EngineState::Idle);
+    const auto seen = examined(engine);
+    ASSERT_EQ(seen.size(), 10U);
+    for (const auto& [subject, finding] : seen)
+        EXPECT_EQ(finding.verdict, Verdict::Ok) << subject << ": " << finding.seen;
+    EXPECT_NE(seen.at("identity").seen.find("SIM-0001"), std::string::npos);
+    EXPECT_NE(seen.at("self-test").seen.find("2 dark frames"), std::string::npos);
+    EXPECT_FALSE(port.cable.wasLit());
+    EXPECT_EQ(engine->status().state, EngineState::Idle);
+    const auto step = Logbook::open(folder.path())->setting("plan-step/SIM-0001");
+    ASSERT_TRUE(step);
+    EXPECT_EQ(*step, "") << "none was given out";
+    for (int again = 0; again < 2; ++again)
+        EXPECT_EQ(examined(engine).at("self-test").verdict, Verdict::Ok);
+}
+
+TEST_F(EngineOnRig, RigInAJobIsNotAskedAndNotesSayWhy) {
+    RunningEngine engine(folder.path(), port);
+    engine.await(EngineState::Idle);
+    ASSERT_TRUE(engine.awaitTurns(1));  // its state has been said
+    const auto id = submitHeld(engine);
+    const auto seen = examined(engine);  // though nothing moves on its cable
+    for (const char* subject : {"clock", "self-test", "noise", "counters", "link"}) {
+        EXPECT_EQ(seen.at(subject).verdict, Verdict::Note) << subject;
+        EXPECT_NE(seen.at(subject).seen.find("calibrate-mirror"), std::string::npos)
+            << seen.at(subject).seen;
+    }
+    EXPECT_EQ(seen.at("claim").seen, "goniod's, and running");
+    EXPECT_EQ(seen.at("temperature").verdict, Verdict::Ok) << seen.at("temperature").seen;
+    EXPECT_EQ(seen.at("interlock").verdict, Verdict::Ok);
+    EXPECT_TRUE(engine->cancel(id));
+    port.cable.letGo();
+}
+
+TEST_F(EngineOnRig, HandsOffNothingIsAskedOfTheRig) {
+    RunningEngine engine(folder.path(), port);
+    engine.await(EngineState::Idle);
+    ASSERT_TRUE(engine.awaitTurns(1));  // its state has been said
+    port.cable.hold();
+    const auto seen = examined(engine, true);
+    EXPECT_EQ(seen.at("self-test").seen, "not looked at: not asked for");
+    port.cable.letGo();
+}
+
+TEST_F(EngineOnRig, RigThatIsNotThereIsAFailureThatSaysWhy) {
+    port.refuse(Error{ErrorKind::Busy, "the rig is held by other-program"});
+    RunningEngine engine(folder.path(), port);
+    ASSERT_TRUE(waitUntil([&] { return !engine->status().obstacle.empty(); }));
+    const auto seen = examined(engine);
+    ASSERT_EQ(seen.size(), 1U);
+    EXPECT_EQ(seen.at("claim").verdict, Verdict::Fail);
+    EXPECT_NE(seen.at("claim").seen.find("held by other-program"), std::string::npos);
+    EXPECT_NE(seen.at("claim").cure, "");
+}
+
+TEST_F(EngineOnRig, RecordingThatMayNotGrowEndsWithAnEventAndTheJobGoesOn) {
+    ::signal(SIGXFSZ, SIG_IGN);
+    constexpr rlim_t kBytes = 1U << 20;  // of a file: less than the first frames, more than the log
+    const rlimit limit{.rlim_cur = kBytes, .rlim_max = RLIM_INFINITY};
+    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &limit), 0);
+    auto recorder = driver::Recorder::open(folder / "traffic");
+    ASSERT_TRUE(recorder) << recorder.error().message;
+    RecordedPort recorded(std::make_unique<test::TestPort>(), std::move(*recorder));
+    RunningEngine engine(folder.path(), recorded);
+    engine.await(EngineState::Idle);
+    Watcher watcher(*engine);
+    const auto id = submit(engine);
+    const auto events = watcher.until("recording", {{"state", "ended"}});
+    const std::string message = Json::parse(events.back().data)["message"];
+    EXPECT_NE(message.find((folder / "traffic").string()), std::string::npos) << message;
+    for (int steps = 0; steps < 2; ++steps) {
+        for (const EventRecord& event : watcher.until("progress", {{"job", id}}))
+            EXPECT_NE(event.type, "recording") << "it is told once";
+    }
+    ASSERT_TRUE(engine->cancel(id));
+    watcher.until("job", {{"job", id}, {"state", "cancelled"}});
+    engine.end();
+    const auto replay = driver::Replay::open(folder / "traffic");
+    EXPECT_TRUE(replay) << "what was recorded is whole: " << replay.error().message;
+}
+
+TEST_F(EngineOnRig, JobOnAReplayThatIsOverEndsAtOnce) {
+    const auto file = folder / "traffic";
+    {
         auto recorder = driver::Recorder::open(file);
         ASSERT_TRUE(recorder) << recorder.error().message;
-        RecordedPort recorded(std::move(real), std::move(*recorder));
-        seen = whiteVerdict(recorded);
+        RecordedPort recorded(std::make_unique<test::TestPort>(), std::move(*recorder));
+        const test::TempFolder store;
+        RunningEngine engine(store.path(), recorded);
+        engine.await(EngineState::Idle);
     }
-    EXPECT_EQ(seen["schema"], "gonio/verify-white/1");
     auto replay = driver::Replay::open(file);
     ASSERT_TRUE(replay) << replay.error().message;
     ReplayPort replayed(std::move(*replay));
-    EXPECT_EQ(whiteVerdict(replayed), seen);
-    EXPECT_EQ(replayed.list()->front().serial, "SIM-0001");
+    RunningEngine engine(folder.path(), replayed, std::chrono::hours(1));
+    engine.await(EngineState::Idle);
+    const auto id = submit(engine, {.kind = JobKind::CalibrateDark});
+    ASSERT_TRUE(waitUntil([&] {
+        engine.clock().turn(500ms);
+        return !engine->status().job;
+    }));
+    EXPECT_LT(engine.clock().now(), 10min) << "it was not waited for";
+    const JobRecord job = kept(id);
+    EXPECT_EQ(job.state, JobState::Interrupted);
+    ASSERT_TRUE(job.error);
+    EXPECT_EQ(job.error->kind, ErrorKind::Device) << job.error->message;
+}
+
+TEST_F(EngineOnRig, RecordedAndReplayedRigsAreAskedByJobsOnly) {
+    const auto file = folder / "traffic";
+    const auto expectLeft = [&](RigPort& rig, const std::string& why) {
+        const test::TempFolder store;
+        RunningEngine engine(store.path(), rig);
+        engine.await(EngineState::Idle);
+        ASSERT_TRUE(engine.awaitTurns(1));
+        const auto seen = examined(engine);
+        EXPECT_EQ(seen.at("self-test").verdict, Verdict::Note);
+        EXPECT_NE(seen.at("self-test").seen.find(why), std::string::npos)
+            << seen.at("self-test").seen;
+    };
+    {
+        auto recorder = driver::Recorder::open(file);
+        ASSERT_TRUE(recorder) << recorder.error().message;
+        RecordedPort recorded(std::make_unique<test::TestPort>(), std::move(*recorder));
+        expectLeft(recorded, "recorded");
+    }
+    auto replay = driver::Replay::open(file);
+    ASSERT_TRUE(replay) << replay.error().message;
+    ReplayPort replayed(std::move(*replay));
+    expectLeft(replayed, "a recording");
 }
 
 TEST_F(EngineOnRig, WhileAJobRunsEverythingElseIsBusy) {

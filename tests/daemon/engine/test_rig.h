@@ -161,6 +161,7 @@ public:
         return &cable;
     }
     void close() override {}
+    [[nodiscard]] const driver::Replay* replay() const override { return nullptr; }
     [[nodiscard]] std::string placed() const override { return {}; }
     Result<bool> placeMirror(const proc::Wedge& wedge) override {
         if (failsToPlace) throw std::runtime_error("no place for the mirror");
