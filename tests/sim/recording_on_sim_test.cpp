@@ -289,9 +289,9 @@ TEST_F(Recording, SaysOfAnotherRequestWhatItIs) {
     auto replay = Replay::open(file_);
     ASSERT_TRUE(replay);
     auto transport = (*replay)->openRig();
-    const auto other = (*transport)->resetStream();
+    const auto other = (*transport)->resetPort();
     ASSERT_FALSE(other);
-    EXPECT_NE(other.error().message.find("wanted: get feature 01; seen: reset the stream; do "),
+    EXPECT_NE(other.error().message.find("wanted: get feature 01; seen: reset the port; do "),
               std::string::npos)
         << other.error().message;
 }
