@@ -154,10 +154,16 @@ Result<driver::Capture> darkFrames(driver::Rig& rig) {
 
 Finding selfTest(const Result<driver::Capture>& dark) {
     if (!dark) {
+        const Error& why = dark.error();
+        if (why.deviceStatus == driver::status::kInterlock)
+            return {"self-test", Verdict::Warn, why.message, "set the rig down, close the cover"};
+        if (why.deviceStatus == driver::status::kOverTemp)
+            return {"self-test", Verdict::Warn, why.message, "too warm to light: let it cool"};
         return {"self-test",
                 Verdict::Fail,
-                dark.error().message,
-                "another cable and port first; then the rig's firmware"};
+                why.message,
+                why.deviceStatus != 0 ? "unplug the rig and plug it in; then the rig's firmware"
+                                      : "another cable and port first; then the rig's firmware"};
     }
     const Size size = dark->front().pixels.size();
     const std::string seen = "2 dark frames of " + std::to_string(size.width) + " x " +
@@ -173,6 +179,7 @@ Finding selfTest(const Result<driver::Capture>& dark) {
 /// Of one frame, in DN: from the difference of two, which leaves out what both have.
 struct DarkNoise {
     double mean = 0, sigma = 0;
+    double step = 0;  ///< from the second to the first
 };
 
 DarkNoise noiseOf(const Frame& a, const Frame& b) {
@@ -184,7 +191,7 @@ DarkNoise noiseOf(const Frame& a, const Frame& b) {
         double n = 0, sum = 0, level = 0, squares = 0;
         for (std::size_t i = 0; i < first.size(); ++i) {
             const double difference = double{1} * first[i] - second[i];
-            if (std::abs(difference) > most) continue;
+            if (std::abs(difference - noise.step) > most) continue;
             n += 1;
             sum += difference;
             squares += difference * difference;
@@ -192,7 +199,7 @@ DarkNoise noiseOf(const Frame& a, const Frame& b) {
         }
         const double mean = sum / n;
         const double spread = std::sqrt(std::max(squares / n - mean * mean, 0.0));
-        noise = {.mean = level / n, .sigma = spread / std::sqrt(2.0)};
+        noise = {.mean = level / n, .sigma = spread / std::sqrt(2.0), .step = mean};
         most = kOutlier * std::max(spread, 1.0);
     }
     return noise;
@@ -210,8 +217,10 @@ Finding noise(const Result<driver::Capture>& dark, const RigProfile& profile) {
     const double wanted = std::sqrt(analogue / members + rounding) / electronsPerDn;
     const std::string text = fixed(seen.sigma, 2) + " DN, " + profile.name + " says " +
                              fixed(wanted, 2) + "; black " + fixed(seen.mean, 1) +
-                             " DN, the rig says " + std::to_string(frame.blackLevel);
-    if (std::abs(seen.mean - frame.blackLevel) > kBlackTolerance) {
+                             " DN, the rig says " + std::to_string(frame.blackLevel) + ", " +
+                             fixed(std::abs(seen.step), 1) + " DN from frame to frame";
+    const auto near = [](double a, double b) { return std::abs(a - b) <= kBlackTolerance; };
+    if (!near(seen.mean, frame.blackLevel) || !near(seen.step, 0)) {  // what is no number is not
         return {"noise",
                 Verdict::Warn,
                 text,

@@ -166,6 +166,29 @@ TEST_F(DoctorInside, LightThatLeaksInIsAWarning) {
     EXPECT_NE(noise.cure.find("light leak"), std::string::npos);
 }
 
+TEST_F(DoctorInside, LightThatFlickersIsAWarningToo) {
+    auto script = sim::FaultScript::parse("on frame 2 black frame");
+    ASSERT_TRUE(script) << script.error().message;
+    rig.door.usb().play(std::move(*script));
+    const Finding noise = seen("noise");
+    EXPECT_EQ(noise.verdict, Verdict::Warn) << noise.seen;
+    EXPECT_EQ(noise.seen.find("nan"), std::string::npos) << noise.seen;
+    EXPECT_NE(noise.cure.find("light leak"), std::string::npos);
+}
+
+TEST_F(DoctorInside, RigThatIsTooWarmOrOpenedInItsSelfTestNeedsNoOtherCable) {
+    for (const auto& [fault, cure] : {std::pair{"on frame 1 overheat", "cool"},
+                                      std::pair{"on frame 1 open interlock", "cover"}}) {
+        auto script = sim::FaultScript::parse(fault);
+        ASSERT_TRUE(script) << script.error().message;
+        rig.door.usb().play(std::move(*script));
+        const Finding test = seen("self-test");
+        EXPECT_EQ(test.verdict, Verdict::Warn) << test.seen;
+        EXPECT_NE(test.cure.find(cure), std::string::npos) << fault << ": " << test.seen;
+        EXPECT_EQ(test.cure.find("cable"), std::string::npos) << test.cure;
+    }
+}
+
 TEST_F(DoctorInside, CountersTellOfAHostThatIsTooSlowAndOfACableThatIsBad) {
     const auto with = [&](std::function<void(driver::Stats&)> how) {
         change<driver::Stats>([](const driver::Report& r) { return driver::decodeStats(r); },
