@@ -76,7 +76,9 @@ bool MockNode::isOpenedAlone() const {
     g_free(root);
     int files = 0;
     for (const auto& process : fs::directory_iterator("/proc", gone)) {
-        std::error_code unreadable;  // it has ended, or is no process
+        if (process.path().filename().string().find_first_not_of("0123456789") != std::string::npos)
+            continue;                // no process, or this one under another name
+        std::error_code unreadable;  // it has ended
         for (const auto& file : fs::directory_iterator(process.path() / "fd", unreadable))
             files += fs::read_symlink(file.path(), unreadable) == node ? 1 : 0;
     }
