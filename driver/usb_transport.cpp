@@ -170,7 +170,7 @@ Result<Chosen> theOne(const std::vector<FoundRig>& rigs, const UsbSelection& wan
     for (const FoundRig& found : rigs) names += " " + found.rig.serial;
     return Error{ErrorKind::Usage,
                  std::to_string(rigs.size()) + " rigs with USB id " + ids + " are there:" + names +
-                     "; say which one by its serial number"};
+                     "; say which one by its serial number: --rig usb:SERIAL"};
 }
 
 std::size_t payloadOf(HidChannel& hid) {

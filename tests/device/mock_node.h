@@ -32,6 +32,7 @@ protected:
     [[nodiscard]] UMockdevTestbed* testbed() const { return testbed_; }
     [[nodiscard]] const std::string& path() const { return path_; }
     [[nodiscard]] bool isOpen();
+    [[nodiscard]] bool isOpenedAlone() const;
     [[nodiscard]] bool gone() const { return gone_; }
     [[nodiscard]] sim::LiveRig& live() const { return live_; }
     /// There, and answering nothing.
@@ -51,7 +52,6 @@ protected:
 
 private:
     void detach();
-    [[nodiscard]] bool isOpenedAlone() const;
     static void onOpen(UMockdevIoctlBase*, UMockdevIoctlClient* client, MockNode* self);
 
     sim::LiveRig& live_;

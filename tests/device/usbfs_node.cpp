@@ -164,10 +164,15 @@ int UsbfsNode::answer(UMockdevIoctlClient* client) {
 }
 
 int UsbfsNode::claim(UMockdevIoctlClient* client, int interface) {
+    if (live().faults.claimed) return EBUSY;
     const auto owner = claims_.find(interface);
-    if (live().faults.claimed || (owner != claims_.end() && owner->second != client)) return EBUSY;
-    if (owner == claims_.end())
-        claims_.emplace(interface, UMOCKDEV_IOCTL_CLIENT(g_object_ref(client)));
+    if (owner != claims_.end()) {
+        if (owner->second == client) return 0;
+        if (!isOpenedAlone()) return EBUSY;
+        g_object_unref(owner->second);  // of a process that was killed
+        claims_.erase(owner);
+    }
+    claims_.emplace(interface, UMOCKDEV_IOCTL_CLIENT(g_object_ref(client)));
     return 0;
 }
 
