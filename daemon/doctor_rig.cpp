@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "daemon/finest_binning.h"
 #include "proc/core/number_text.h"
@@ -13,7 +14,10 @@
 namespace gonio::daemon {
 namespace {
 
-constexpr int kReadings = 8;                     // of the clock; the quickest counts
+constexpr int kReadings = 32;  // of the clock
+constexpr double kApart = 1;   // s, between two looks at it
+constexpr auto kPause = std::chrono::milliseconds(100);
+constexpr double kTick = 1e-6;                   // s, of the rig's clock
 constexpr double kMostDrift = 200e-6;            // two usual crystals differ by 100 ppm at most
 constexpr double kSlowRoundTrip = 0.02;          // s; a command is repeated after 0.1 s
 constexpr double kNearLimit = 2;                 // K
@@ -44,25 +48,51 @@ Finding identity(const driver::RigInfo& info) {
 
 // ---- clock ----
 
-/// The rig's clock at a moment of the host's.
+/// The rig's clock beside the host's, s: means of readings, and what their scatter leaves open.
 struct ClockReading {
-    double host = 0, device = 0, roundTrip = 0;  // s
+    double host = 0, offset = 0, uncertainty = 0, roundTrip = 0;
 };
 
+/// Of those whose answer came quickly; a delay that all have cancels between two calls.
 Result<ClockReading> readClock(driver::RigLink& link) {
     const auto now = [&] { return std::chrono::duration<double>(link.clock().now()).count(); };
-    std::optional<ClockReading> best;
+    std::vector<ClockReading> readings;
     for (int i = 0; i < kReadings; ++i) {
         const double before = now();
         const auto answer = link.command(
             driver::Op::SyncTime, driver::encodeU64(static_cast<std::uint64_t>(before * 1e6)));
         if (!answer) return answer.error();
-        const ClockReading reading{.host = (before + now()) / 2,
-                                   .device = static_cast<double>(driver::decodeU64(*answer)) * 1e-6,
-                                   .roundTrip = now() - before};
-        if (!best || reading.roundTrip < best->roundTrip) best = reading;
+        const double host = (before + now()) / 2;
+        readings.push_back({.host = host,
+                            .offset = static_cast<double>(driver::decodeU64(*answer)) * 1e-6 - host,
+                            .roundTrip = now() - before});
     }
-    return *best;
+    const auto quickest =
+        std::min_element(readings.begin(), readings.end(), [](const auto& a, const auto& b) {
+            return a.roundTrip < b.roundTrip;
+        });
+    const double most = 2 * quickest->roundTrip;
+    double n = 0;
+    ClockReading mean{.roundTrip = quickest->roundTrip};
+    std::erase_if(readings, [&](const ClockReading& one) { return one.roundTrip > most; });
+    for (const ClockReading& one : readings) {
+        n += 1;
+        mean.host += (one.host - mean.host) / n;
+        mean.offset += (one.offset - mean.offset) / n;
+    }
+    double squares = 0;
+    for (const ClockReading& one : readings) squares += std::pow(one.offset - mean.offset, 2);
+    mean.uncertainty = std::sqrt(squares / std::max(n - 1, 1.0) / n) + kTick;
+    return mean;
+}
+
+/// A second after the first, or later.
+Result<ClockReading> readClockAgain(driver::RigLink& link, const ClockReading& first) {
+    const auto then = std::chrono::duration<double>(first.host + kApart);
+    while (link.clock().now() < then) {
+        if (auto waited = link.readBulk(kPause); !waited) return waited.error();
+    }
+    return readClock(link);
 }
 
 Finding clock(const Result<ClockReading>& first, const Result<ClockReading>& last) {
@@ -73,9 +103,8 @@ Finding clock(const Result<ClockReading>& first, const Result<ClockReading>& las
                 "plug the rig in again; bring its firmware up to date"};
     }
     const double passed = last->host - first->host;
-    const double drift = (last->device - first->device) / passed - 1;
-    // The moment of a reading is known to half its round trip, and to 1 us of the rig's clock.
-    const double uncertainty = ((first->roundTrip + last->roundTrip) / 2 + 2e-6) / passed;
+    const double drift = (last->offset - first->offset) / passed;
+    const double uncertainty = 2 * std::hypot(first->uncertainty, last->uncertainty) / passed;
     const std::string seen = "round trip " + milliseconds(last->roundTrip) + ", drift " +
                              ppm(drift) + " +- " + ppm(uncertainty) + " in " + fixed(passed, 2) +
                              " s";
@@ -87,6 +116,12 @@ Finding clock(const Result<ClockReading>& first, const Result<ClockReading>& las
     }
     if (last->roundTrip > kSlowRoundTrip) {
         return {"clock", Verdict::Warn, seen, "plug it in without a hub; is the computer busy?"};
+    }
+    if (uncertainty > kMostDrift) {
+        return {"clock",
+                Verdict::Note,
+                seen + ": not enough to judge by",
+                "once more, with fewer programs at once"};
     }
     return {"clock", Verdict::Ok, seen, ""};
 }
@@ -152,10 +187,10 @@ Result<driver::Capture> darkFrames(driver::Rig& rig) {
     return rig.capture({.planStep = kOwnStep, .exposure = shortest, .frames = 2, .keepLit = false});
 }
 
-Finding selfTest(const Result<driver::Capture>& dark) {
+Finding selfTest(const Result<driver::Capture>& dark, bool opened) {
     if (!dark) {
         const Error& why = dark.error();
-        if (why.deviceStatus == driver::status::kInterlock)
+        if (opened || why.deviceStatus == driver::status::kInterlock)
             return {"self-test", Verdict::Warn, why.message, "set the rig down, close the cover"};
         if (why.deviceStatus == driver::status::kOverTemp)
             return {"self-test", Verdict::Warn, why.message, "too warm to light: let it cool"};
@@ -298,7 +333,8 @@ std::vector<Finding> examineClaimed(driver::Rig& rig, const RigProfile& profile)
     const bool open = status && !mayLight(*status);
     const Result<driver::Capture> dark =
         open ? Error{ErrorKind::Device, "the interlock is open"} : darkFrames(rig);
-    const auto clockAfter = readClock(wire);
+    const auto after = rig.status();
+    const auto clockAfter = clockBefore ? readClockAgain(wire, *clockBefore) : clockBefore;
     const auto stats = wire.stats();
     std::vector<Finding> findings{identity(rig.identify()), clock(clockBefore, clockAfter)};
     if (status) {
@@ -313,7 +349,7 @@ std::vector<Finding> examineClaimed(driver::Rig& rig, const RigProfile& profile)
                                       Verdict::Note,
                                       "no frame is valid while the interlock is open",
                                       ""}
-                            : selfTest(dark));
+                            : selfTest(dark, after && !mayLight(*after)));
     findings.push_back(noise(dark, profile));
     findings.push_back(counters(stats));
     findings.push_back(link(rig));

@@ -181,11 +181,14 @@ TEST_F(DoctorInside, RigThatIsTooWarmOrOpenedInItsSelfTestNeedsNoOtherCable) {
                                       std::pair{"on frame 1 open interlock", "cover"}}) {
         auto script = sim::FaultScript::parse(fault);
         ASSERT_TRUE(script) << script.error().message;
-        rig.door.usb().play(std::move(*script));
-        const Finding test = seen("self-test");
-        EXPECT_EQ(test.verdict, Verdict::Warn) << test.seen;
-        EXPECT_NE(test.cure.find(cure), std::string::npos) << fault << ": " << test.seen;
-        EXPECT_EQ(test.cure.find("cable"), std::string::npos) << test.cure;
+        BentRig another(config());  // a fault stays until its cause is gone
+        another.door.usb().play(std::move(*script));
+        for (const Finding& test : examineInside(another, kSession, profile)) {
+            if (test.subject != "self-test") continue;
+            EXPECT_EQ(test.verdict, Verdict::Warn) << test.seen;
+            EXPECT_NE(test.cure.find(cure), std::string::npos) << fault << ": " << test.seen;
+            EXPECT_EQ(test.cure.find("cable"), std::string::npos) << test.cure;
+        }
     }
 }
 

