@@ -161,12 +161,14 @@ TEST_F(Recording, OfARigThatWentAwayEndsInTheSameErrors) {
     EXPECT_EQ(hostOf(**(*replay)->openRig()), seen);
 }
 
-/// Opens the rig, and again each time it is lost, as long as `open` finds one.
+/// Opens the rig, and again each time it is lost, as long as `open` finds one and not for ever.
 Story persistent(const std::function<Result<Transport*>()>& open) {
     Story story;
+    int searches = 0;
     const auto search = [&](const Error& lost) -> Result<Transport*> {
         story.text += lost.message + "\n";
-        for (int i = 0; i < 40; ++i) {
+        ++searches;
+        for (int i = 0; searches < 40 && i < 40; ++i) {
             if (auto found = open()) return found;
         }
         return Error{ErrorKind::Interrupted, "it did not come back"};
