@@ -38,7 +38,7 @@ public:
     [[nodiscard]] virtual std::string_view kind() const = 0;
     [[nodiscard]] virtual Result<std::vector<RigListing>> list() = 0;
     /// The port keeps the transport until close(). NoRig, Busy and Device errors may pass: try
-    /// again. Any other stays, and no job waits for the rig.
+    /// again.
     [[nodiscard]] virtual Result<driver::Transport*> open() = 0;
     virtual void close() = 0;
     /// The recording that is played in a rig's place; null: there is a rig, or may be one. For the

@@ -59,7 +59,7 @@ case $1 in
 esac
 
 bin=$(realpath "$1/bin")
-root=$folder/root/daemon
+root=$folder/packed/daemon
 mkdir -p "$root"/{lib,config}
 echo "$bin" >"$folder/bin"
 daemon=
@@ -102,7 +102,7 @@ programs=("$bin/goniod" "$bin/gonio" "$(PATH=$PATH:/usr/sbin command -v usbip)")
 for program in "${programs[@]}"; do strip -o "$root/$(basename "$program")" "$program"; done
 ldd "${programs[@]}" | awk '$2 == "=>" && $3 ~ /^\// { print $3 }' | sort -u |
     xargs -I{} cp -L {} "$root/lib/"
-tar -c -C "$folder/root" -f "$folder/daemon.part" .
+tar -c -C "$folder/packed" -f "$folder/daemon.part" .
 mv "$folder/daemon.part" "$folder/daemon.tar"
 mv "$folder/other/sim.json" "$store/"
 
