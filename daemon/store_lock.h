@@ -1,24 +1,13 @@
 #pragma once
-// One process at a time uses the rig of a store: a lock on the file rig.lock, which the kernel
-// gives back however the process ends.
+// One process at a time uses the rig of a store: a lock on the file rig.lock.
 
 #include <filesystem>
 
-#include "proc/core/result.h"
+#include "driver/file_lock.h"
 
 namespace gonio::daemon {
 
-class StoreLock {
-public:
-    /// Busy error, at once, when another process has it.
-    [[nodiscard]] static Result<StoreLock> take(const std::filesystem::path& storeRoot);
-    ~StoreLock();
-    StoreLock(StoreLock&& other) noexcept;
-    StoreLock& operator=(StoreLock&&) = delete;
-
-private:
-    explicit StoreLock(int descriptor) : descriptor_(descriptor) {}
-    int descriptor_;
-};
+/// Busy error, at once, when another process has it.
+[[nodiscard]] Result<driver::FileLock> lockStore(const std::filesystem::path& storeRoot);
 
 }  // namespace gonio::daemon

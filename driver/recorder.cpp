@@ -34,60 +34,82 @@ bool hardlyBegun(std::istream& file, std::uint64_t bytes) {
            });
 }
 
-/// From `begin` on there is one record at most, of which not all reached the disk: it is cut off,
-/// damaged and the last, or zeros are in its place.
-bool tornFrom(std::istream& file, std::uint64_t begin, std::uint64_t bytes) {
-    std::array<std::uint8_t, 4> word{};
-    const std::uint64_t frame = 2 * word.size();  // a length before, a CRC after
-    if (bytes - begin < frame) return true;
+bool allZeroFrom(std::istream& file, std::uint64_t begin) {
     file.seekg(static_cast<std::streamoff>(begin));
-    file.read(reinterpret_cast<char*>(word.data()), word.size());  // NOLINT(*reinterpret*)
-    const auto length = get<std::uint32_t>(word, 0);
-    if (length > 0) return length <= kLongestRecord && length + frame >= bytes - begin;
     return std::all_of(std::istreambuf_iterator<char>(file), {}, [](char c) { return c == 0; });
 }
 
-/// How much of it can be continued, or why nothing can.
-Result<std::uint64_t> soundRecording(const fs::path& path) {
+/// From `begin` on there is one record at most, of which not all reached the disk: it is cut off,
+/// damaged and the last, or zeros are in its place or behind it. One that claims more than is left
+/// is cut off only where no more is left than a record may have, `longest`: else its length is
+/// what is damaged, and sound records follow.
+bool tornFrom(std::istream& file, std::uint64_t begin, std::uint64_t bytes, std::uint64_t longest) {
+    std::array<std::uint8_t, 4> word{};
+    const std::uint64_t frame = 2 * word.size();  // a length before, a CRC after
+    const std::uint64_t left = bytes - begin;
+    if (left < frame) return true;
+    file.seekg(static_cast<std::streamoff>(begin));
+    file.read(reinterpret_cast<char*>(word.data()), word.size());  // NOLINT(*reinterpret*)
+    const auto length = get<std::uint32_t>(word, 0);
+    if (length == 0) return allZeroFrom(file, begin);
+    if (length + frame >= left) return length <= kLongestRecord && left <= longest;
+    return allZeroFrom(file, begin + length + frame);
+}
+
+/// Of a recording, in bytes: what it has, and how much of that can be continued.
+struct Extent {
+    std::uint64_t all = 0, sound = 0;
+};
+
+/// Or why nothing can be continued.
+Result<Extent> extentOf(const fs::path& path) {
+    constexpr std::uint64_t kUsualRecord = std::uint64_t{1} << 19;  // a chunk of 256 KiB
     std::error_code problem;
     const std::uint64_t bytes = fs::file_size(path, problem);
     if (problem) return fileError(path, problem.message());
     std::ifstream file(path, std::ios::binary);
-    if (hardlyBegun(file, bytes)) return std::uint64_t{0};
+    if (hardlyBegun(file, bytes)) return Extent{.all = bytes, .sound = 0};
     auto reader =
         RecordingReader::open(std::make_unique<std::ifstream>(path, std::ios::binary), bytes);
     if (!reader) return reader.error().in(path.string());
+    std::uint64_t longest = kUsualRecord;
     while (true) {
+        const std::uint64_t before = reader->begin();
         const auto call = reader->next();
-        if (!call && tornFrom(file, reader->begin(), bytes)) return reader->begin();
+        longest = std::max(longest, reader->begin() - before);
+        if (!call && tornFrom(file, reader->begin(), bytes, longest))
+            return Extent{.all = bytes, .sound = reader->begin()};
         if (!call) return call.error().in(path.string());
-        if (!*call) return bytes;
+        if (!*call) return Extent{.all = bytes, .sound = bytes};
     }
 }
 
 /// Without the record that the last writer was stopped in.
-Result<void> shorten(const fs::path& path, std::uint64_t bytes) {
+Result<void> shorten(const fs::path& path, const Extent& extent) {
+    if (extent.sound == extent.all) return {};
     std::error_code problem;
-    const std::uint64_t torn = fs::file_size(path, problem) - bytes;
-    if (problem || torn == 0) return {};
-    fs::resize_file(path, bytes, problem);
+    fs::resize_file(path, extent.sound, problem);
     if (problem) return fileError(path, "its torn last record: " + problem.message());
-    log::warning("record to " + path.string() + ": the last " + std::to_string(torn) +
-                 " bytes were torn and are cut off; it goes on at byte " + std::to_string(bytes));
+    log::warning(
+        "record to " + path.string() + ": the last " + std::to_string(extent.all - extent.sound) +
+        " bytes were torn and are cut off; it goes on at byte " + std::to_string(extent.sound));
     return {};
 }
 
 }  // namespace
 
 Result<std::unique_ptr<Recorder>> Recorder::open(const fs::path& file) {
-    std::unique_ptr<Recorder> recorder(new Recorder(file));
-    std::error_code ignored;
-    if (fs::exists(file, ignored)) {
-        const Result<std::uint64_t> sound = soundRecording(file);
-        if (!sound) return sound.error();
-        if (Result<void> cut = shorten(file, *sound); !cut) return cut.error();
-        recorder->bytes_ = *sound;
-    }
+    auto lock = FileLock::take(
+        file,
+        0666,
+        "record to " + file.string() + ": another program writes it; end that, or name another");
+    if (!lock && lock.error().kind == ErrorKind::Busy) return lock.error();
+    if (!lock) return Error{lock.error().kind, "record to " + lock.error().message};
+    std::unique_ptr<Recorder> recorder(new Recorder(file, std::move(*lock)));
+    const Result<Extent> extent = extentOf(file);
+    if (!extent) return extent.error();
+    if (Result<void> cut = shorten(file, *extent); !cut) return cut.error();
+    recorder->bytes_ = extent->sound;
     // Without a buffer of its own: what has been written is there whatever becomes of the program.
     recorder->file_.rdbuf()->pubsetbuf(nullptr, 0);
     recorder->file_.open(file, std::ios::binary | std::ios::app);

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "driver/file_lock.h"
 #include "driver/recording.h"
 
 namespace gonio::driver {
@@ -16,7 +17,8 @@ namespace gonio::driver {
 class Recorder {
 public:
     /// A recording that is there already is continued, without a last record that a power cut has
-    /// torn (a warning); an empty file is begun. A File error for any other file, which stays.
+    /// torn (a warning); an empty file is begun. A File error for any other file, which stays, and
+    /// Busy for one that another recorder writes.
     [[nodiscard]] static Result<std::unique_ptr<Recorder>> open(const std::filesystem::path& file);
 
     /// One that failed as the one before it did is not told again.
@@ -27,10 +29,12 @@ public:
     [[nodiscard]] const std::string& ending() const { return ending_; }
 
 private:
-    explicit Recorder(std::filesystem::path path) : path_(std::move(path)) {}
+    Recorder(std::filesystem::path path, FileLock lock)
+        : path_(std::move(path)), lock_(std::move(lock)) {}
     [[nodiscard]] bool write();
 
     std::filesystem::path path_;
+    FileLock lock_;
     std::ofstream file_;
     std::uint64_t bytes_ = 0;  ///< up to the last whole record
     std::vector<std::uint8_t> buffer_;

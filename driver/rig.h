@@ -183,6 +183,14 @@ private:
         Next
     };
     Result<ArmedCapture> arm(const CaptureRequest& request, int frames, Turn turn);
+    Result<FramePlan> apply(const CaptureRequest& request);
+    Result<void> setFormat(const Geometry& geometry);
+    Result<void> putOut();
+    Result<void> quiesce();
+    Result<void> abort();
+    Result<void> flush();
+    [[nodiscard]] Error failed(const Error& error, const Anomalies& before) const;
+    // Of memory (rig_memory.cpp).
     [[nodiscard]] int framesHeld() const;
     [[nodiscard]] ExpectedCapture sized(int frames) const;
     [[nodiscard]] bool mayArmAhead(const Making& making) const;
@@ -195,13 +203,6 @@ private:
                                     const ArmAhead& ahead,
                                     bool sink) const;
     void provideMemory(const CaptureRequest& request, const ArmAhead& ahead, bool sink);
-    Result<FramePlan> apply(const CaptureRequest& request);
-    Result<void> setFormat(const Geometry& geometry);
-    Result<void> putOut();
-    Result<void> quiesce();
-    Result<void> abort();
-    Result<void> flush();
-    [[nodiscard]] Error failed(const Error& error, const Anomalies& before) const;
 
     std::unique_ptr<RigLink> link_;  ///< empty after a move
     Assembler assembler_;

@@ -24,7 +24,8 @@ struct UsbFree {
     void operator()(libusb_device* device) const;
     void operator()(libusb_device_handle* handle) const;
 };
-using UsbContext = std::unique_ptr<libusb_context, UsbFree>;
+/// Shared by what was found and opened through it: the last of them ends it, wherever that is.
+using UsbContext = std::shared_ptr<libusb_context>;
 using UsbDeviceRef = std::unique_ptr<libusb_device, UsbFree>;
 using UsbHandle = std::unique_ptr<libusb_device_handle, UsbFree>;
 
@@ -39,22 +40,25 @@ struct RigInterfaces {
 };
 
 struct FoundRig {
+    UsbContext context;
     UsbDeviceRef device;
     RigInterfaces interfaces;
     UsbRig rig;
 };
 
 struct OpenedRig {
+    UsbContext context;
     UsbHandle handle;
     RigInterfaces interfaces;
     DeviceStrings strings;
+    std::string place;  ///< as in UsbRig
 };
 
 /// A fresh one each time: without udev an old context never sees what was plugged in later.
 [[nodiscard]] Result<UsbContext> makeUsbContext();
 /// Devices of the wanted ids, and of the wanted serial where it is known; one that has not a rig's
 /// interfaces has an obstacle that says so, and cannot be opened.
-[[nodiscard]] Result<std::vector<FoundRig>> findRigs(libusb_context* context,
+[[nodiscard]] Result<std::vector<FoundRig>> findRigs(const UsbContext& context,
                                                      const UsbSelection& wanted);
 /// Opens and reads the strings; claims nothing yet.
 [[nodiscard]] Result<OpenedRig> openRig(const FoundRig& found);
@@ -67,18 +71,11 @@ struct OpenedRig {
 [[nodiscard]] std::string textIn(std::span<const std::uint8_t> descriptor);
 /// It has the descriptors of a SuperSpeed device, whatever the port gives it.
 [[nodiscard]] bool canSuperSpeed(const OpenedRig& rig);
-/// One control request, answered in 200 ms: 0, or libusb's error.
-[[nodiscard]] int askWhetherThere(const OpenedRig& rig);
-/// It is there and does not answer that request: it hangs.
-[[nodiscard]] bool isSilent(const OpenedRig& rig);
-/// 0, or libusb's error. The rig has to be opened anew.
-[[nodiscard]] int resetPortOf(const OpenedRig& rig);
-/// Resets the port of a silent rig, once until it has answered. False: that was done, another
-/// program has it, or it did not help.
-[[nodiscard]] bool wake(const OpenedRig& rig);
-void noteAnswer(const OpenedRig& rig);
-/// Takes the stream interface, from a kernel driver too.
+/// Takes the stream interface, from a kernel driver too. Busy: another program has it.
 Result<void> claimStream(const OpenedRig& rig);
+
+/// "rig SIM-0042"; "rig at 1-2.4" where its serial number is not known.
+[[nodiscard]] std::string nameOf(const OpenedRig& rig);
 
 /// What libusb's code means for a person who tried `what`.
 [[nodiscard]] Error usbError(int code, const std::string& what);

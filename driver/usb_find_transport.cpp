@@ -4,8 +4,7 @@
 #include <array>
 #include <fstream>
 #include <functional>
-#include <mutex>
-#include <set>
+#include <utility>
 
 #include "driver/usb_find.h"
 
@@ -33,31 +32,6 @@ std::string placeOf(libusb_device* device) {
     }
     return place;
 }
-
-/// Where a port was reset, and the rig has not answered since.
-class PlacesReset {
-public:
-    static void add(const std::string& place) {
-        const std::scoped_lock lock(one().mutex_);
-        one().places_.insert(place);
-    }
-    static void remove(const std::string& place) {
-        const std::scoped_lock lock(one().mutex_);
-        one().places_.erase(place);
-    }
-    [[nodiscard]] static bool have(const std::string& place) {
-        const std::scoped_lock lock(one().mutex_);
-        return one().places_.contains(place);
-    }
-
-private:
-    static PlacesReset& one() {
-        static PlacesReset places;
-        return places;
-    }
-    std::mutex mutex_;
-    std::set<std::string> places_;
-};
 
 /// The kernel's copy of the serial number, which needs no permission to read.
 std::string knownSerial(const std::string& place) {
@@ -183,12 +157,12 @@ Result<UsbContext> makeUsbContext() {
     libusb_context* context = nullptr;
     const int code = libusb_init(&context);
     if (code != 0) return usbError(code, "start libusb");
-    return UsbContext(context);
+    return UsbContext(context, UsbFree());
 }
 
-Result<std::vector<FoundRig>> findRigs(libusb_context* context, const UsbSelection& wanted) {
+Result<std::vector<FoundRig>> findRigs(const UsbContext& context, const UsbSelection& wanted) {
     libusb_device** list = nullptr;
-    const auto count = libusb_get_device_list(context, &list);
+    const auto count = libusb_get_device_list(context.get(), &list);
     if (count < 0) return usbError(static_cast<int>(count), "list USB devices");
     std::vector<FoundRig> rigs;
     for (auto i = decltype(count){0}; i < count; ++i) {
@@ -202,7 +176,8 @@ Result<std::vector<FoundRig>> findRigs(libusb_context* context, const UsbSelecti
         const int speed = speedOf(device.get());
         const std::string serial = knownSerial(place);
         if (wanted.serial && !serial.empty() && serial != *wanted.serial) continue;
-        rigs.push_back({.device = std::move(device),
+        rigs.push_back({.context = context,
+                        .device = std::move(device),
                         .interfaces = interfaces,
                         .rig = {.vendor = descriptor.idVendor,
                                 .product = descriptor.idProduct,
@@ -226,7 +201,11 @@ Result<OpenedRig> openRig(const FoundRig& found) {
             error.message += ": " + permissionCure(rig.vendor, rig.product);
         return error;
     }
-    OpenedRig opened{.handle = UsbHandle(raw), .interfaces = found.interfaces, .strings = {}};
+    OpenedRig opened{.context = found.context,
+                     .handle = UsbHandle(raw),
+                     .interfaces = found.interfaces,
+                     .strings = {},
+                     .place = rig.place};
     libusb_device_descriptor descriptor{};
     (void)libusb_get_device_descriptor(found.device.get(), &descriptor);  // cached: cannot fail
     opened.strings = {.vendor = rig.vendor,
@@ -247,44 +226,17 @@ bool canSuperSpeed(const OpenedRig& rig) {
     return can;
 }
 
-int askWhetherThere(const OpenedRig& rig) {
-    constexpr unsigned kProbeMs = 200;
-    std::array<std::uint8_t, 2> status{};
-    const int got = libusb_control_transfer(rig.handle.get(),
-                                            LIBUSB_ENDPOINT_IN,
-                                            LIBUSB_REQUEST_GET_STATUS,
-                                            0,
-                                            0,
-                                            status.data(),
-                                            static_cast<std::uint16_t>(status.size()),
-                                            kProbeMs);
-    if (got == static_cast<int>(status.size())) return 0;
-    return got < 0 ? got : LIBUSB_ERROR_IO;
-}
-
-bool isSilent(const OpenedRig& rig) { return askWhetherThere(rig) == LIBUSB_ERROR_TIMEOUT; }
-
-int resetPortOf(const OpenedRig& rig) {
-    PlacesReset::add(placeOf(libusb_get_device(rig.handle.get())));
-    const int code = libusb_reset_device(rig.handle.get());
-    return code == LIBUSB_ERROR_NOT_FOUND ? 0 : code;  // it shows up anew
-}
-
-bool wake(const OpenedRig& rig) {
-    const bool before = PlacesReset::have(placeOf(libusb_get_device(rig.handle.get())));
-    return !before && claimStream(rig) && resetPortOf(rig) == 0;
-}
-
-void noteAnswer(const OpenedRig& rig) {
-    PlacesReset::remove(placeOf(libusb_get_device(rig.handle.get())));
-}
-
 Result<void> claimStream(const OpenedRig& rig) {
     // Not supported on a system without kernel drivers to detach: then there is nothing to do.
     (void)libusb_set_auto_detach_kernel_driver(rig.handle.get(), 1);
     const int code = libusb_claim_interface(rig.handle.get(), rig.interfaces.stream);
-    if (code != 0) return usbError(code, "claim the stream of rig " + rig.strings.serial);
+    if (code != 0) return usbError(code, "claim the stream of " + nameOf(rig));
     return {};
+}
+
+std::string nameOf(const OpenedRig& rig) {
+    const std::string& serial = rig.strings.serial;
+    return "rig " + (serial.empty() ? "at " + rig.place : serial);
 }
 
 }  // namespace gonio::driver

@@ -4,6 +4,8 @@
 // is never freed, and these two only grow.
 
 #include <atomic>
+#include <string>
+#include <thread>
 
 namespace gonio::driver {
 
@@ -17,5 +19,9 @@ struct UsbLedger {
 };
 
 [[nodiscard]] UsbLedger& usbLedger();
+
+/// Joins a thread that has ended; one that has not is left behind with what it owns, counted, and
+/// warned of.
+void joinOrLeave(std::thread& thread, bool ended, const std::string& warning);
 
 }  // namespace gonio::driver

@@ -36,7 +36,7 @@ struct StreamCounters {
 
 class UsbStream : public std::enable_shared_from_this<UsbStream> {
 public:
-    UsbStream(UsbContext context, OpenedRig rig);
+    explicit UsbStream(OpenedRig rig);
     ~UsbStream();
     UsbStream(const UsbStream&) = delete;
     UsbStream& operator=(const UsbStream&) = delete;
@@ -47,8 +47,8 @@ public:
     [[nodiscard]] Result<std::optional<BulkBytes>> read(Nanoseconds wait);
     /// Resets the port, on the stream's own thread; the stream has failed then, for the rig has
     /// lost its link. An error when the port is not reset in a second (it is then reset as soon as
-    /// that thread can, also after closing), and at once when the rig is gone: a kernel may try
-    /// for seconds to reset a port that nothing is at.
+    /// that thread can, also after closing). A rig that is gone is an error without a reset: a
+    /// kernel may try for seconds to reset a port that nothing is at.
     Result<void> resetPort();
     /// Asks the thread to end, and waits for it until `deadline`; a thread that is not done then
     /// keeps this object alive by itself, and the rig is Busy until its transfers are back.
@@ -80,6 +80,7 @@ private:
     [[nodiscard]] bool drain();
     void recover(bool stalled);
     void doResetPort();
+    [[nodiscard]] bool findsItGone();
     // With the mutex held:
     void submitIdle();
     void inFlight(int change);
@@ -89,7 +90,6 @@ private:
     void fail(Error error);
     [[nodiscard]] int busy() const;
 
-    UsbContext context_;
     OpenedRig rig_;
     std::thread thread_;
 

@@ -8,6 +8,7 @@
 #include "driver/protocol/chunk.h"
 #include "driver/usb_ledger.h"
 #include "driver/usb_stream.h"
+#include "driver/usb_wake.h"
 #include "proc/core/log.h"
 
 namespace gonio::driver {
@@ -20,7 +21,6 @@ constexpr std::size_t kMostInFlight = std::size_t{2} << 20;  // PROTOCOL.md 3
 constexpr int kFewest = 2;
 constexpr std::size_t kMost = 64;  // however small the chunks are that a rig says it sends
 constexpr auto kDrainLimit = 500ms;
-constexpr auto kResetLimit = 1s;
 constexpr auto kLeftBehind = 60s;  // then the kernel will not give back what it has
 constexpr auto kPause = 20ms;      // before libusb is asked again after it has failed
 
@@ -38,10 +38,7 @@ std::size_t bufferBytes(std::size_t maxChunkPayload, std::size_t packet) {
 
 }  // namespace
 
-UsbStream::UsbStream(UsbContext context, OpenedRig rig)
-    : context_(std::move(context)), rig_(std::move(rig)) {
-    ++usbLedger().streams;
-}
+UsbStream::UsbStream(OpenedRig rig) : rig_(std::move(rig)) { ++usbLedger().streams; }
 
 UsbStream::~UsbStream() {
     --usbLedger().streams;
@@ -50,9 +47,8 @@ UsbStream::~UsbStream() {
         usbLedger().transfersInFlight -= inFlight_;
         usbLedger().quarantinedTransfers += inFlight_;
         // The kernel may still write into these buffers: better a leak than that.
-        (void)std::make_unique<std::vector<Slot>>(std::move(slots_)).release();
-        (void)rig_.handle.release();
-        (void)context_.release();
+        using Left = std::pair<OpenedRig, std::vector<Slot>>;
+        (void)std::make_unique<Left>(std::move(rig_), std::move(slots_)).release();
         return;
     }
     for (Slot& slot : slots_) libusb_free_transfer(slot.transfer);
@@ -113,9 +109,10 @@ Result<void> UsbStream::resetPort() {
     portResetWanted_ = true;
     portReset_.reset();
     lock.unlock();
-    libusb_interrupt_event_handler(context_.get());
+    libusb_interrupt_event_handler(rig_.context.get());
     lock.lock();
-    changed_.wait_until(lock, steadyNow() + kResetLimit, [&] { return portReset_.has_value(); });
+    changed_.wait_until(
+        lock, steadyNow() + kPortResetLimit, [&] { return portReset_.has_value(); });
     if (portReset_) return *portReset_;
     fail({ErrorKind::Device, "rig " + strings().serial + ": its port cannot be reset"});
     return *failure_;
@@ -127,7 +124,7 @@ void UsbStream::askToStop() {
         stopping_ = true;
         holding_ = true;
     }
-    libusb_interrupt_event_handler(context_.get());
+    libusb_interrupt_event_handler(rig_.context.get());
 }
 
 void UsbStream::awaitStop(SteadyTime deadline) {
@@ -135,13 +132,8 @@ void UsbStream::awaitStop(SteadyTime deadline) {
     std::unique_lock lock(mutex_);
     const bool ended = changed_.wait_until(lock, deadline, [&] { return finished_; });
     lock.unlock();
-    if (ended) {
-        thread_.join();
-    } else {
-        log::warning("rig " + strings().serial + ": its stream does not end; it is left behind");
-        ++usbLedger().quarantinedThreads;
-        thread_.detach();
-    }
+    joinOrLeave(
+        thread_, ended, "rig " + strings().serial + ": its stream does not end; it is left behind");
 }
 
 std::optional<Error> UsbStream::failure() const {
@@ -187,7 +179,7 @@ void UsbStream::serve() {
 
 void UsbStream::handleEvents(int milliseconds) {
     timeval wait{.tv_sec = 0, .tv_usec = milliseconds * 1000};
-    const int code = libusb_handle_events_timeout_completed(context_.get(), &wait, nullptr);
+    const int code = libusb_handle_events_timeout_completed(rig_.context.get(), &wait, nullptr);
     if (code == 0 || code == LIBUSB_ERROR_INTERRUPTED) return;
     {
         std::unique_lock lock(mutex_);
@@ -256,9 +248,11 @@ void UsbStream::recover(bool stalled) {
     // Those that ended while the others were drained tell nothing new.
     stalled_ = suspect_ = false;
     const std::string name = "rig " + strings().serial;
+    // A rig that hangs says nothing until the time is up, and a port reset may help it.
+    if (probe == LIBUSB_ERROR_TIMEOUT)
+        return fail({ErrorKind::Device, name + " does not answer; check its cable and power"});
     if (probe != 0) {
-        // A rig that hangs says nothing until the time is up, and a port reset may help it.
-        gone_ = probe != LIBUSB_ERROR_TIMEOUT;
+        gone_ = true;
         return fail(usbError(LIBUSB_ERROR_NO_DEVICE, "read from " + name));
     }
     if (!drained) return fail({ErrorKind::Device, name + ": its transfers do not come back"});
@@ -268,18 +262,26 @@ void UsbStream::recover(bool stalled) {
     submitIdle();
 }
 
+/// The reports of a rig that was unplugged may fail a moment before its transfers do.
+bool UsbStream::findsItGone() {
+    {
+        std::unique_lock lock(mutex_);
+        if (gone_) return true;
+    }
+    return isGone(rig_);
+}
+
 /// Whatever became of it, the rig has to be opened anew.
 void UsbStream::doResetPort() {
     (void)drain();
-    const int code = resetPortOf(rig_);
-    std::unique_lock lock(mutex_);
     const std::string name = "rig " + strings().serial;
-    if (code == 0) {
-        portReset_.emplace();
-    } else {
-        portReset_.emplace(usbError(code, "reset the port of " + name));
-    }
-    fail({ErrorKind::Device, name + ": its port was reset"});
+    const bool gone = findsItGone();
+    const Result<void> done =
+        gone ? usbError(LIBUSB_ERROR_NO_DEVICE, "reset the port of " + name) : resetPortOf(rig_);
+    std::unique_lock lock(mutex_);
+    gone_ |= gone;
+    portReset_ = done;
+    fail(done ? Error{ErrorKind::Device, name + ": its port was reset"} : done.error());
 }
 
 // ---- with the mutex held

@@ -9,6 +9,7 @@
 #include "driver/usb_find.h"
 #include "driver/usb_power.h"
 #include "driver/usb_stream.h"
+#include "driver/usb_wake.h"
 
 namespace gonio::driver {
 namespace {
@@ -17,8 +18,8 @@ using namespace std::chrono_literals;
 
 constexpr auto kCloseLimit = 900ms;   // of the second that closing may take
 constexpr auto kReopenLimit = 200ms;  // for the old reports to end
-// Where IDENT does not say it: the rig is of another major version, or damaged, and the link will
-// refuse it by name.
+// Where IDENT does not say it, asked twice: the rig is of another major version, or damaged, and
+// the link will refuse it by name.
 constexpr std::size_t kAnyPayload = 64 * 1024;
 constexpr std::size_t kLargestPayload = std::size_t{16} << 20;
 
@@ -91,27 +92,21 @@ private:
     std::shared_ptr<HidChannel> hid_;
 };
 
-struct Chosen {
-    OpenedRig opened;
-    std::string place;
-};
-
-Result<Chosen> choose(const FoundRig& found) {
+Result<OpenedRig> choose(const FoundRig& found) {
     auto opened = openRig(found);
-    if (!opened) return opened.error();
+    if (!opened) return opened;
     if (opened->strings.serial.empty() && isSilent(*opened)) {
-        const bool woken = wake(*opened);
+        if (auto woken = wake(std::move(*opened)); !woken) return woken.error();
         return Error{
             ErrorKind::Device,
-            "rig at " + found.rig.place + " does not answer; " +
-                (woken ? "its port was reset, open it again" : "check its cable and power")};
+            "rig at " + found.rig.place + " does not answer; its port was reset, open it again"};
     }
     noteAnswer(*opened);
-    return Chosen{.opened = std::move(*opened), .place = found.rig.place};
+    return opened;
 }
 
 /// A rig whose number the system does not tell is opened to read it.
-Result<Chosen> bySerial(const std::vector<FoundRig>& rigs, const std::string& serial) {
+Result<OpenedRig> bySerial(const std::vector<FoundRig>& rigs, const std::string& serial) {
     std::optional<Error> obstacle;
     std::string others;
     for (const FoundRig& found : rigs) {
@@ -120,12 +115,12 @@ Result<Chosen> bySerial(const std::vector<FoundRig>& rigs, const std::string& se
             if (!obstacle || found.rig.serial == serial) obstacle = chosen.error();
             continue;
         }
-        const std::string& its = chosen->opened.strings.serial;
+        const std::string& its = chosen->strings.serial;
         if (its == serial) return chosen;
         if (its.empty()) {
-            obstacle = Error{ErrorKind::Device,
-                             "rig at " + chosen->place +
-                                 ": its serial number cannot be read; check its cable and power"};
+            obstacle = Error{
+                ErrorKind::Device,
+                nameOf(*chosen) + ": its serial number cannot be read; check its cable and power"};
             continue;
         }
         others += (others.empty() ? "" : ", ") + its;
@@ -135,12 +130,20 @@ Result<Chosen> bySerial(const std::vector<FoundRig>& rigs, const std::string& se
 }
 
 /// Nobody has asked for it by its serial number, so that it may have none.
-Result<Chosen> theOnlyOne(const FoundRig& rig) {
+Result<OpenedRig> theOnlyOne(const FoundRig& rig) {
     auto chosen = choose(rig);
     if (!chosen) return chosen;
-    if (auto sound = checkSerial(chosen->opened.strings); !sound)
+    if (auto sound = checkSerial(chosen->strings); !sound)
         return sound.error().in("USB device " + chosen->place);
     return chosen;
+}
+
+/// Also those that are no rigs.
+Result<std::vector<FoundRig>> findAll(const UsbSelection& wanted) {
+    if (auto done = awaitPortResets(); !done) return done.error();
+    const auto context = makeUsbContext();
+    if (!context) return context.error();
+    return findRigs(*context, wanted);
 }
 
 /// Those that may be rigs; an error that says why there is none.
@@ -157,7 +160,7 @@ Result<std::vector<FoundRig>> soundOnes(std::vector<FoundRig> rigs) {
     return rigs;
 }
 
-Result<Chosen> theOne(const std::vector<FoundRig>& rigs, const UsbSelection& wanted) {
+Result<OpenedRig> theOne(const std::vector<FoundRig>& rigs, const UsbSelection& wanted) {
     const std::string ids = idText(wanted.vendor, wanted.product);
     if (rigs.empty()) {
         return Error{ErrorKind::NoRig,
@@ -173,10 +176,15 @@ Result<Chosen> theOne(const std::vector<FoundRig>& rigs, const UsbSelection& wan
                      "; say which one by its serial number: --rig usb:SERIAL"};
 }
 
-std::size_t payloadOf(HidChannel& hid) {
+Result<Ident> identOf(HidChannel& hid) {
     const auto report = hid.getFeature(static_cast<std::uint8_t>(ReportId::Ident));
-    if (!report) return kAnyPayload;
-    const Result<Ident> ident = decodeIdent(*report);
+    if (!report) return report.error();
+    return decodeIdent(*report);
+}
+
+std::size_t payloadOf(HidChannel& hid) {
+    auto ident = identOf(hid);
+    if (!ident) ident = identOf(hid);  // a report may be damaged on its way
     if (!ident || ident->maxChunkPayload == 0 || ident->maxChunkPayload > kLargestPayload)
         return kAnyPayload;
     return ident->maxChunkPayload;
@@ -199,9 +207,7 @@ void inspect(const FoundRig& found, UsbRig& rig) {
 }  // namespace
 
 Result<std::vector<UsbRig>> listUsb(const UsbSelection& wanted) {
-    const auto context = makeUsbContext();
-    if (!context) return context.error();
-    const auto found = findRigs(context->get(), wanted);
+    const auto found = findAll(wanted);
     if (!found) return found.error();
     std::vector<UsbRig> rigs;
     for (const FoundRig& one : *found) {
@@ -212,21 +218,17 @@ Result<std::vector<UsbRig>> listUsb(const UsbSelection& wanted) {
 }
 
 Result<std::unique_ptr<Transport>> openUsb(const UsbSelection& wanted) {
-    auto context = makeUsbContext();
-    if (!context) return context.error();
-    auto found = findRigs(context->get(), wanted);
+    auto found = findAll(wanted);
     if (!found) return found.error();
-    auto rigs = soundOnes(std::move(*found));
+    const auto rigs = soundOnes(std::move(*found));
     if (!rigs) return rigs.error();
-    auto chosen = theOne(*rigs, wanted);
-    if (!chosen) return chosen.error();
-    rigs->clear();  // what they refer to must not outlive the context
-    keepAwake(chosen->place);
-    OpenedRig& opened = chosen->opened;
-    if (auto claimed = claimStream(opened); !claimed) return claimed.error();
-    auto hid = openReports(opened.strings, opened.interfaces);
+    auto opened = theOne(*rigs, wanted);
+    if (!opened) return opened.error();
+    keepAwake(opened->place);
+    if (auto claimed = claimStream(*opened); !claimed) return claimed.error();
+    auto hid = openReports(opened->strings, opened->interfaces);
     if (!hid) return hid.error();
-    auto stream = std::make_shared<UsbStream>(std::move(*context), std::move(opened));
+    auto stream = std::make_shared<UsbStream>(std::move(*opened));
     std::unique_ptr<Transport> transport = std::make_unique<UsbTransport>(stream, *hid);
     const auto started = stream->start(payloadOf(**hid));
     if (!started) return started.error();

@@ -8,7 +8,8 @@
 // No rig: NoRig. No permission, or claimed by another program: Busy, and the message says what to
 // do; both may pass, as a device node may get its permissions late. Gone, or silent: Device, and so
 // is every call from then on; open it anew. A rig that is silent when it is opened gets its port
-// reset, once until it has answered.
+// reset, once until it has answered. As long as a port is being reset, for a second at most,
+// opening and listing wait; then they are Device errors.
 
 #include <cstdint>
 #include <memory>

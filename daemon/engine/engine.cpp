@@ -237,9 +237,9 @@ void Engine::tellJob(const JobRecord& job) {
     tell("job", dump(json), true);
 }
 
-void Engine::tellNotices() {
-    const std::string notice = port_.takeNotice();
-    if (!notice.empty()) tell("recording", dump({{"state", "ended"}, {"message", notice}}), true);
+void Engine::tellRecordingEnd() {
+    const std::string why = port_.takeRecordingEnd();
+    if (!why.empty()) tell("recording", dump({{"state", "ended"}, {"message", why}}), true);
 }
 
 void Engine::advance(EngineEvent event, const std::string& detail) {
@@ -258,7 +258,7 @@ void Engine::run(const std::stop_token& stop) {
     while (!stop.stop_requested()) {
         world_.alive();
         tend();
-        tellNotices();
+        tellRecordingEnd();
         serveNext();
         runPending(stop);
     }
@@ -269,7 +269,7 @@ void Engine::run(const std::stop_token& stop) {
 
 Engine::Engine(Store store,
                Logbook logbook,
-               StoreLock lock,
+               driver::FileLock lock,
                RigPort& port,
                RigProfile profile,
                EngineWorld world,
@@ -293,7 +293,7 @@ Result<std::unique_ptr<Engine>> Engine::open(const std::filesystem::path& root,
                                              EngineWorld world) {
     Result<Store> store = Store::open(root);
     if (!store) return store.error();
-    Result<StoreLock> lock = StoreLock::take(store->root());
+    Result<driver::FileLock> lock = lockStore(store->root());
     if (!lock) return lock.error();
     if (Result<void> swept = store->sweep(); !swept) return swept.error();
     Result<Logbook> logbook = Logbook::open(store->root());

@@ -27,8 +27,6 @@
 
 namespace gonio::daemon {
 
-inline constexpr Nanoseconds kRescanning = std::chrono::milliseconds(500);  // PROTOCOL.md 4
-
 /// What a person has to do before a job goes on.
 struct Question {
     std::uint64_t number = 0;  ///< of the event that asks it
@@ -130,7 +128,7 @@ private:
 
     Engine(Store store,
            Logbook logbook,
-           StoreLock lock,
+           driver::FileLock lock,
            RigPort& port,
            RigProfile profile,
            EngineWorld world,
@@ -152,7 +150,8 @@ private:
     void tend();
     void lost(const Error& why);
     void disconnect();
-    void hinder(const std::optional<Error>& obstacle);
+    void hinder(const std::optional<Error>& obstacle, const std::string& whom = {});
+    void publishRig();
     // A job that goes on (engine_recovery.cpp).
     [[nodiscard]] Result<driver::Transport*> comeBack(const Error& lost);
     [[nodiscard]] Result<driver::Transport*> lookAgain();
@@ -179,7 +178,7 @@ private:
     void reserveNumbers();
     void tell(const std::string& type, const std::string& json, bool kept);
     void tellJob(const JobRecord& job);
-    void tellNotices();
+    void tellRecordingEnd();
     template <class Change>
     void publish(Change change) {
         const std::scoped_lock lock(mutex_);
@@ -189,7 +188,7 @@ private:
 
     Store store_;
     Logbook logbook_;
-    StoreLock lock_;
+    driver::FileLock lock_;
     RigPort& port_;
     RigProfile profile_;
     EngineWorld world_;

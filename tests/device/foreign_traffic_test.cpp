@@ -41,12 +41,11 @@ class ForeignStream : public UsbRigTest {
 protected:
     [[nodiscard]] std::shared_ptr<driver::UsbStream> stream() {
         auto context = driver::makeUsbContext();
-        auto rigs = driver::findRigs(context->get(), {});
+        auto rigs = driver::findRigs(*context, {});
         if (!rigs || rigs->size() != 1) return nullptr;
         auto opened = driver::openRig(rigs->front());
         if (!opened || !driver::claimStream(*opened)) return nullptr;
-        rigs->clear();
-        return std::make_shared<driver::UsbStream>(std::move(*context), std::move(*opened));
+        return std::make_shared<driver::UsbStream>(std::move(*opened));
     }
 
     /// What the recorded host did not take back, as a rig would send it.
@@ -246,7 +245,7 @@ TEST(ForeignDevice, WhoseDescriptorsEndTooSoonIsNoRig) {
     ASSERT_TRUE(umockdev_testbed_add_from_string(bus.testbed(), text.c_str(), nullptr));
     const auto context = driver::makeUsbContext();
     ASSERT_TRUE(context);
-    const auto rigs = driver::findRigs(context->get(), {});
+    const auto rigs = driver::findRigs(*context, {});
     ASSERT_TRUE(rigs) << rigs.error().message;
     int sound = 0;
     for (const driver::FoundRig& found : *rigs) {

@@ -155,6 +155,10 @@ int HidrawNode::feature(bool get, std::span<std::uint8_t> report) {
     });
     if (reply.answer != sim::UsbAnswer::Done) return -EPIPE;
     std::copy(reply.data.begin(), reply.data.end(), report.begin());
+    if (get && toSpoil_ > 0) {
+        --toSpoil_;
+        report.back() ^= 1;
+    }
     return get ? static_cast<int>(reply.data.size()) : static_cast<int>(report.size());
 }
 

@@ -20,6 +20,8 @@ public:
     /// Call once the test bed has the node.
     void connect();
     void pull(bool quietly) override;
+    /// The next feature reports that are read arrive damaged.
+    void spoilFeatures(int reports) { toSpoil_ = reports; }
     /// As usbhid does: the halt of a stalled endpoint is cleared. Not from within the rig.
     void clearHalt();
 
@@ -33,6 +35,7 @@ private:
 
     int pipe_ = -1;
     std::atomic<bool> halted_{false};
+    std::atomic<int> toSpoil_{0};
     std::mutex writing_;  ///< reports go into it whole
 };
 

@@ -118,10 +118,28 @@ void MockRig::sendInstead(std::deque<sim::UsbReply> transfers) {
     usbfs_->sendInstead(std::move(transfers));
 }
 
+void MockRig::spoilFeatures(int reports) {
+    const std::scoped_lock lock(mutex_);
+    hidraw_->spoilFeatures(reports);
+}
+
+void MockRig::resetsFor(std::chrono::milliseconds patience) {
+    const std::scoped_lock lock(mutex_);
+    usbfs_->resetsFor(patience);
+}
+
 void MockRig::unplug() {
     const std::scoped_lock lock(mutex_);
     live_.with([](sim::FaultyUsb& usb) { usb.unplug(); });
     if (usbfs_) takeDown(false);
+}
+
+void MockRig::unplug(const std::function<void()>& meanwhile) {
+    const std::scoped_lock lock(mutex_);
+    usbfs_->sendInstead({});
+    live_.with([](sim::FaultyUsb& usb) { usb.unplug(); });
+    meanwhile();
+    takeDown(false);
 }
 
 void MockRig::forgetPulled() {

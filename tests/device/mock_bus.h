@@ -3,7 +3,9 @@
 // libudev see, answered by simulated rigs in real time. One bus at a time in a process, and the
 // process must run under umockdev-wrapper. Transports are closed before their rig and bus end.
 
+#include <chrono>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <span>
@@ -54,8 +56,15 @@ public:
     /// The cable is pulled: transfers in flight end in errors, then the nodes vanish. A fault
     /// script pulls it too.
     void unplug();
+    /// Likewise, but the transfers in flight end, and the nodes vanish, only when `meanwhile` is
+    /// over: until then every request fails.
+    void unplug(const std::function<void()>& meanwhile);
     /// The stream brings these transfers and then none, whatever the rig has.
     void sendInstead(std::deque<sim::UsbReply> transfers);
+    /// Of the nodes that it has now: the next feature reports that are read arrive damaged; as long
+    /// as it hangs, a kernel tries to reset its port for so long.
+    void spoilFeatures(int reports);
+    void resetsFor(std::chrono::milliseconds patience);
     /// What a script has done to the cable by now has happened to the nodes.
     void settle() { watchTheCable(); }
     /// Those who had the pulled nodes open have closed them.

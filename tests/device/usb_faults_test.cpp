@@ -2,10 +2,15 @@
 
 #include <sys/stat.h>
 
+#include <filesystem>
+#include <fstream>
 #include <thread>
 
+#include "driver/usb_ledger.h"
+#include "driver/usb_wake.h"
 #include "tests/device/usb_rig_fixture.h"
 #include "tests/device/without_rights.h"
+#include "tests/support/wait_until.h"
 
 namespace gonio::device_test {
 namespace {
@@ -176,6 +181,27 @@ TEST_F(UsbFaults, UnpluggingIsADeviceErrorAtOnce) {
     EXPECT_EQ(gone.error().kind, ErrorKind::NoRig);
 }
 
+TEST_F(UsbFaults, ThePortOfARigThatWasUnpluggedIsNotResetThoughItsTransfersSayNothingYet) {
+    mock.unplug([&] {
+        const auto reset = transport->resetPort();
+        ASSERT_FALSE(reset);
+        EXPECT_EQ(reset.error().kind, ErrorKind::Device);
+        EXPECT_NE(reset.error().message.find("it is gone"), std::string::npos)
+            << reset.error().message;
+    });
+    EXPECT_EQ(mock.faults().portResets, 0);
+}
+
+TEST_F(UsbFaults, ARigThatHangsBehindAnErrorIsSaidNotToAnswer) {
+    mock.live().with([](sim::FaultyUsb& usb) { usb.cause(sim::FaultKind::Hang); });
+    mock.sendInstead({{.answer = sim::UsbAnswer::Error, .data = {}}});
+    const auto chunk = transport->readBulk(5s);
+    ASSERT_FALSE(chunk);
+    EXPECT_EQ(chunk.error().kind, ErrorKind::Device);
+    EXPECT_NE(chunk.error().message.find("SIM-0042 does not answer"), std::string::npos)
+        << chunk.error().message;
+}
+
 TEST_F(UsbFaults, PluggedInAgainItMeasuresTheSame) {
     repaired(litFrames(1, 2));
     const auto boot = rig->identify().ident.bootId;
@@ -268,6 +294,63 @@ TEST_F(UsbRigTest, ARigThatIsSilentWhenItIsOpenedGetsItsPortReset) {
         << silent.error().message;
     const auto awake = driver::openUsb();
     EXPECT_TRUE(awake) << awake.error().message;
+}
+
+TEST_F(UsbRigTest, ASilentRigThatAnotherProgramHasIsBusy) {
+    mock.faults().hung = mock.faults().claimed = true;
+    for (int i = 0; i < 2; ++i) {
+        const auto transport = driver::openUsb();
+        ASSERT_FALSE(transport);
+        EXPECT_EQ(transport.error().kind, ErrorKind::Busy) << transport.error().message;
+        EXPECT_NE(transport.error().message.find("another program"), std::string::npos);
+    }
+    EXPECT_EQ(mock.faults().portResets, 0);
+}
+
+/// Threads of this process by this name.
+int threadsNamed(const std::string& name) {
+    int count = 0;
+    for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
+        std::string its;
+        std::getline(std::ifstream(task.path() / "comm") >> std::ws, its);
+        count += its == name ? 1 : 0;
+    }
+    return count;
+}
+
+TEST_F(UsbRigTest, OpeningEndsInTimeWhileAKernelResetsItsPort) {
+    mock.faults().hung = true;
+    mock.resetsFor(60s);
+    const int leftBefore = driver::usbLedger().quarantinedThreads;
+    const auto refused = [](const char* why) {
+        const auto transport = driver::openUsb();
+        ASSERT_FALSE(transport);
+        EXPECT_EQ(transport.error().kind, ErrorKind::Device);
+        EXPECT_NE(transport.error().message.find(why), std::string::npos)
+            << transport.error().message;
+    };
+    EXPECT_LT(timed([&] { refused("its port cannot be reset"); }), 3 * kDeadline) << "2.2 s";
+    EXPECT_EQ(driver::usbLedger().quarantinedThreads, leftBefore + 1);
+    EXPECT_LT(timed([&] { refused("at 1-1 is still being reset"); }), kDeadline);
+    EXPECT_LT(timed([&] { EXPECT_FALSE(driver::listUsb()); }), kDeadline);
+    mock.faults().hung = false;
+    EXPECT_TRUE(test::waitUntil([] { return threadsNamed(driver::kWakeThread) == 0; }));
+    EXPECT_TRUE(opened());
+    EXPECT_EQ(mock.faults().portResets, 1);
+}
+
+/// Whose chunks are larger than the buffers that any rig gets.
+TEST_F(UsbRigTest, FillsTheBuffersItAskedForThoughItsFirstIdentWasDamaged) {
+    mock.live().warmUp(kSmallWindow);
+    mock.spoilFeatures(1);
+    const auto transport = opened();
+    ASSERT_TRUE(transport);
+    auto rig = Rig::open(*transport, kSession);
+    ASSERT_TRUE(rig) << rig.error().message;
+    ASSERT_TRUE(rig->configure(kSmallWindow));
+    const auto capture = rig->capture(litFrames(1, 3));
+    ASSERT_TRUE(capture) << capture.error().message;
+    EXPECT_EQ(capture->anomalies, driver::Anomalies{});
 }
 
 }  // namespace

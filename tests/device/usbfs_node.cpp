@@ -18,8 +18,6 @@ constexpr std::size_t kSetup = 8;  // bytes before the data of a control transfe
 // What usbfs does by itself waits longer than the driver for a rig that answers nothing. (A kernel
 // waits for five seconds.)
 constexpr auto kKernelPatience = 3s;
-// Of a port: a kernel asks such a rig for its descriptors again and again.
-constexpr auto kResetPatience = 1200ms;
 
 usbdevfs_urb& urbOf(UMockdevIoctlData* data) {
     return *reinterpret_cast<usbdevfs_urb*>(data->data);
@@ -151,8 +149,9 @@ int UsbfsNode::answer(UMockdevIoctlClient* client) {
         case USBDEVFS_SETINTERFACE: return setInterface(arg, lock);
         case USBDEVFS_RESET: {
             live().with([](sim::FaultyUsb& usb) { usb.resetPort(); });
+            const auto patience = resetPatience_;
             lock.unlock();
-            return waitWhileHung(kResetPatience);
+            return waitWhileHung(patience);
         }
         case USBDEVFS_CLEAR_HALT: {
             constexpr sim::UsbSetup kClear{
@@ -281,6 +280,11 @@ int UsbfsNode::discard(UMockdevIoctlData* arg) {
 void UsbfsNode::sendInstead(std::deque<sim::UsbReply> transfers) {
     const std::scoped_lock lock(mutex_);
     foreign_ = std::move(transfers);
+}
+
+void UsbfsNode::resetsFor(std::chrono::milliseconds patience) {
+    const std::scoped_lock lock(mutex_);
+    resetPatience_ = patience;
 }
 
 sim::UsbReply UsbfsNode::nextForeign() {

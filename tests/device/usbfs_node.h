@@ -24,6 +24,8 @@ public:
     void pull(bool quietly) override;
     /// From now on the stream brings these transfers, whatever the rig has, and then none.
     void sendInstead(std::deque<sim::UsbReply> transfers);
+    /// So long is the port of a hung rig reset.
+    void resetsFor(std::chrono::milliseconds patience);
 
 private:
     struct Urb {
@@ -55,6 +57,8 @@ private:
     std::deque<Urb> done_;
     std::map<int, UMockdevIoctlClient*> claims_;  ///< who has an interface
     std::optional<std::deque<sim::UsbReply>> foreign_;
+    // A kernel asks such a rig for its descriptors again and again.
+    std::chrono::milliseconds resetPatience_{1200};
 };
 
 }  // namespace gonio::device_test

@@ -80,7 +80,7 @@ TEST(RigComebackAnywhere, TheLastAckTellsWhetherTheCommandThatWasCutOffWasDone) 
             EXPECT_EQ(gap.cutOffDone == false, atWrite) << "every command that was heard is done";
             done += gap.cutOffDone.value_or(false) ? 1 : 0;
             none += gap.cutOffDone ? 0 : 1;
-            EXPECT_EQ(gap.stats.commandsDone, 7U) << "read again";
+            EXPECT_EQ(gap.stats.value().commandsDone, 7U) << "read again";
         }
     });
     EXPECT_GE(unheard, 3) << "SET_LED, SET_EXPOSURE, ARM";

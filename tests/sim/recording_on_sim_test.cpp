@@ -364,6 +364,7 @@ TEST_F(Recording, ThatAPowerCutHasTornIsContinuedAfterItsLastWholeRecord) {
     };
     std::string blank = whole, damaged = whole;
     blank.append(5000, '\0');
+    const std::string halfBlank = whole.substr(0, whole.size() - 10) + std::string(4096 + 10, '\0');
     damaged.back() = static_cast<char>(damaged.back() ^ 1);
     const std::size_t closing = 4 + 26 + 4;  // the last record is that of the close
     const std::string without = whole.substr(0, whole.size() - closing);
@@ -373,6 +374,7 @@ TEST_F(Recording, ThatAPowerCutHasTornIsContinuedAfterItsLastWholeRecord) {
         {without + whole.substr(without.size(), 20), without},
         {damaged, without},
         {blank, whole},
+        {halfBlank, without},
         {whole.substr(0, 9), whole.substr(0, kRecordingHeaderBytes)},
         {"", whole.substr(0, kRecordingHeaderBytes)}};
     for (const auto& [found, kept] : torn) {
@@ -393,6 +395,26 @@ TEST_F(Recording, ThatIsDamagedInTheMiddleIsNotContinuedAndKept) {
     std::ofstream(file_, std::ios::binary | std::ios::trunc) << damaged;
     EXPECT_FALSE(Recorder::open(file_));
     EXPECT_TRUE(bytes() == damaged);
+}
+
+TEST_F(Recording, WhoseFirstLengthIsDamagedIsNotTakenForATornOne) {
+    while (bytes().size() < (std::size_t{1} << 20)) (void)recorded(1);
+    std::string damaged = bytes();
+    damaged[kRecordingHeaderBytes + 3] = 1;  // 16 MiB more
+    std::ofstream(file_, std::ios::binary | std::ios::trunc) << damaged;
+    EXPECT_FALSE(Recorder::open(file_));
+    EXPECT_TRUE(bytes() == damaged);
+}
+
+TEST_F(Recording, IsWrittenByOneAtATime) {
+    {
+        const auto first = Recorder::open(file_);
+        ASSERT_TRUE(first) << first.error().message;
+        const auto second = Recorder::open(file_);
+        ASSERT_FALSE(second);
+        EXPECT_EQ(second.error().kind, ErrorKind::Busy) << second.error().message;
+    }
+    EXPECT_TRUE(Recorder::open(file_)) << "given back";
 }
 
 TEST_F(Recording, EndsWhereTheDiskIsFullAndTheRunGoesOn) {

@@ -52,6 +52,9 @@ TEST(OpName, KnowsEveryOperationAndSaysTheNumberOfOthers) {
 TEST(Interlock, LightNeedsTheSampleSeatedAndTheCoverClosed) {
     EXPECT_EQ(interlock::kMayLight & interlock::kModule, 0);
     EXPECT_EQ(interlock::kMayLight, 3);
+    EXPECT_TRUE(interlock::mayLight(interlock::kMayLight | interlock::kModule));
+    EXPECT_FALSE(interlock::mayLight(interlock::kSeated));
+    EXPECT_FALSE(interlock::mayLight(interlock::kCoverClosed));
     EXPECT_EQ(validity::kAll, 7);
 }
 
