@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "daemon/finest_binning.h"
 #include "daemon/then_dark.h"
 #include "proc/core/number_text.h"
 
@@ -28,7 +29,14 @@ Error tooDark(const std::string& what) {
 /// Some 15 degrees from the normal and out of the plane of incidence: no shadow and no LED there,
 /// and little fall of the light.
 Result<Window> evenPart(driver::Rig& rig) {
-    const Size sensor = rig.identify().sensor;
+    const driver::RigInfo about = rig.identify();
+    if (const int finest = finestBinning(about.limits); finest != 1) {
+        return Error{ErrorKind::Device,
+                     "the rig sends means of " + std::to_string(finest) + " x " +
+                         std::to_string(finest) +
+                         " pixels only; its sensor and LEDs are calibrated by single ones"};
+    }
+    const Size sensor = about.sensor;
     constexpr int kOff = 96;
     const Window window{.x = (sensor.width - kSide) / 2,
                         .y = (sensor.height - kSide) / 2 + kOff,

@@ -176,13 +176,16 @@ Result<sim::DeviceConfig> simDevice(const SimState& state, int cameraUsb) {
     if (!errors) return errors.error();
     const Result<sim::RigErrors> rig = rigErrorsOf(state);
     if (!rig) return rig.error();
+    const bool small = state.serial.starts_with("SMALL");  // docs/simulator.md
     return sim::DeviceConfig{
         .serial = state.serial,
         .seed = state.seed,
         .bootCount = 1,
         .errors = *errors,
         .camera = cameraUsb == 3 ? sim::CameraKind::Usb3 : sim::CameraKind::Usb2,
-        .rig = *rig};
+        .rig = *rig,
+        .binnings = small ? sim::kCoarsestBinning : sim::kAllBinnings,
+        .leds = small ? 1 : sim::kLeds};
 }
 
 Result<sim::FaultScript> readFaults(const std::filesystem::path& file) {

@@ -35,9 +35,7 @@ void Device::place(Placement placement) {
     sincePlaced_ = Nanoseconds(0);
 }
 
-bool Device::mayLight() const {
-    return (interlock_ & interlock::kMayLight) == interlock::kMayLight;
-}
+bool Device::mayLight() const { return interlock::mayLight(interlock_); }
 
 void Device::setInterlock(std::uint8_t bits) {
     const bool could = mayLight();

@@ -28,6 +28,8 @@
 
 namespace gonio::sim {
 
+inline constexpr std::uint8_t kAllBinnings = 0b111, kCoarsestBinning = 0b100;  // 1, 2, 4; 4
+
 struct DeviceConfig {
     std::string serial = "SIM-0001";
     std::uint64_t seed = 1;
@@ -36,6 +38,8 @@ struct DeviceConfig {
     CameraKind camera = CameraKind::Usb2;
     std::uint32_t maxChunkPayload = kMaxChunkPayload;
     RigErrors rig{};
+    std::uint8_t binnings = kAllBinnings;  ///< as LIMITS has them
+    int leds = kLeds;                      ///< attached: the first ones
 };
 
 class Device {
@@ -45,6 +49,7 @@ public:
     // What a door needs. Times are since boot.
     [[nodiscard]] const std::string& serial() const { return config_.serial; }
     [[nodiscard]] std::uint32_t maxChunkPayload() const { return config_.maxChunkPayload; }
+    [[nodiscard]] int leds() const { return config_.leds; }
     [[nodiscard]] CameraLink link() const { return cameraLink(config_.camera); }
     /// Empty: the request stalls.
     [[nodiscard]] std::optional<driver::Report> getFeature(std::uint8_t id);

@@ -104,7 +104,7 @@ void Device::takeEffect(const Settings& wanted) {
 }
 
 std::uint16_t Device::setLed(const SetLed& args, Arguments& result) {
-    if (args.led >= kLeds) return status::kBadArg;
+    if (args.led >= config_.leds) return status::kBadArg;
     const bool dark = args.levels == std::array<std::uint16_t, 3>{};
     if (!dark) {
         if (fault_ != 0) return fault_;
@@ -135,7 +135,7 @@ std::uint16_t Device::setExposure(const SetExposure& args, Arguments& result) {
 std::uint16_t Device::setFormat(const SetFormat& args, Arguments& result) {
     if (capture_) return status::kBadState;
     const bool binning = (args.binning == 1 || args.binning == 2 || args.binning == 4) &&
-                         (limits().binnings & args.binning) != 0;
+                         (config_.binnings & args.binning) != 0;
     const auto stepped = [&](std::uint16_t v) {
         return v % kRoiStep == 0 && (!binning || v % args.binning == 0);
     };

@@ -28,9 +28,6 @@ std::array<std::uint16_t, 3> whiteBalance() {
     return levels;
 }
 
-/// A rig whose serial number begins with COARSE sends pictures of 4 x 4 sensor pixels only.
-bool sendsBinnedOnly(const std::string& serial) { return serial.starts_with("COARSE"); }
-
 }  // namespace
 
 RigState Device::state() const {
@@ -49,8 +46,8 @@ Ident Device::ident() const {
     v.sensorWidth = static_cast<std::uint16_t>(kSensorSize.width);
     v.sensorHeight = static_cast<std::uint16_t>(kSensorSize.height);
     v.bitDepth = static_cast<std::uint8_t>(digits_.bits);
-    v.ledCount = kLeds;
-    for (std::size_t i = 0; i < kLeds; ++i) {
+    v.ledCount = static_cast<std::uint8_t>(config_.leds);
+    for (std::size_t i = 0; i < v.ledCount; ++i) {
         v.ledAngle[i] = static_cast<std::int16_t>(std::lround(100 * kLedDegrees[i]));
     }
     v.wavelengthNm = {630, 525, 465};
@@ -67,7 +64,7 @@ Ident Device::ident() const {
 Limits Device::limits() const {
     Limits v;
     v.formats = 0b11;
-    v.binnings = sendsBinnedOnly(serial()) ? 0b100 : 0b111;
+    v.binnings = config_.binnings;
     v.roiStep = kRoiStep;
     v.maxFrames = kMaxFrames;
     v.framePeriodUs = static_cast<std::uint32_t>(link().framePeriod.count() / 1000);

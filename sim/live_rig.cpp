@@ -73,7 +73,7 @@ void LiveRig::warmUp(const Window& window) {
                           .width = u16(window.size.width),
                           .height = u16(window.size.height),
                           .binning = static_cast<std::uint8_t>(window.binning)}));
-    for (std::uint8_t led = 0; led < kLeds; ++led) {
+    for (std::uint8_t led = 0; led < device.leds(); ++led) {
         send(Op::SetLed, encode(SetLed{.led = led, .levels = {1, 0, 0}}));
         send(Op::Arm, encode(Arm{.captureId = led + 1ULL, .frames = 1, .trigger = 0}));
         device.advanceTo(device.now() + 1s);

@@ -85,16 +85,22 @@ Sensor::Sensor(const std::string& serial, const RigErrors& errors)
     : key_(0x70726E75), errors_(errors), digits_(digitsOf(errors.bits)) {
     for (char c : serial) key_ = mixed(key_, static_cast<unsigned char>(c));
     hotKey_ = mixed(key_, 0x686F74);
-    response_ = Image<float>(kSensorSize);
-    parallelFor(response_.pixels().size(), [&](IndexRange range) {
-        for (std::size_t i = range.begin; i < range.end; ++i) {
-            response_.pixels()[i] = static_cast<float>(response(i));
+    rows_ = std::make_shared<std::array<Row, kSensorSize.height>>();
+}
+
+const Sensor::Row& Sensor::rowOf(int y) const {
+    Row& row = (*rows_)[static_cast<std::size_t>(y)];
+    std::call_once(row.made, [&] {
+        constexpr auto kWidth = static_cast<std::uint64_t>(kSensorSize.width);
+        const std::uint64_t first = static_cast<std::uint64_t>(y) * kWidth;
+        row.response.resize(kWidth);
+        for (std::uint64_t x = 0; x < kWidth; ++x) {
+            row.response[x] = static_cast<float>(response(first + x));
+            const double dark = darkCurrent(first + x);
+            if (dark > kDarkAt25) row.hot.push_back({first + x, dark});
         }
     });
-    for (std::uint64_t pixel = 0; pixel < response_.pixels().size(); ++pixel) {
-        const double dark = darkCurrent(pixel);
-        if (dark > kDarkAt25) hot_.push_back({pixel, dark});
-    }
+    return row;
 }
 
 double Sensor::response(std::uint64_t pixel) const {
@@ -107,11 +113,14 @@ double Sensor::darkCurrent(std::uint64_t pixel) const {
            std::pow(kHottestAt25 / kLeastHotAt25, uniform(mixed(hotKey_, 1), pixel));
 }
 
-void Sensor::darkElectrons(double darkTime, std::uint64_t first, std::span<double> out) const {
+void Sensor::darkElectrons(const Row& row,
+                           double darkTime,
+                           std::uint64_t first,
+                           std::span<double> out) {
     std::fill(out.begin(), out.end(), kDarkAt25 * darkTime);
     const auto before = [](const HotPixel& hot, std::uint64_t pixel) { return hot.pixel < pixel; };
-    for (auto hot = std::lower_bound(hot_.begin(), hot_.end(), first, before);
-         hot != hot_.end() && hot->pixel < first + out.size();
+    for (auto hot = std::lower_bound(row.hot.begin(), row.hot.end(), first, before);
+         hot != row.hot.end() && hot->pixel < first + out.size();
          ++hot) {
         out[hot->pixel - first] = hot->darkCurrent * darkTime;
     }
@@ -131,11 +140,12 @@ void Sensor::exposeRow(const Shot& shot,
                        int row,
                        std::span<std::uint16_t> out) const {
     const auto left = static_cast<std::size_t>(view.x);
-    const auto response = response_.row(view.y + row).subspan(left, out.size());
+    const Row& own = rowOf(view.y + row);
+    const auto response = std::span(own.response).subspan(left, out.size());
     const auto sensorRow = static_cast<std::uint64_t>(view.y + row);
-    const std::uint64_t firstPixel = sensorRow * response_.row(0).size() + left;
+    const std::uint64_t firstPixel = sensorRow * own.response.size() + left;
     std::vector<double> dark(out.size());
-    darkElectrons(shot.darkTime, firstPixel, dark);
+    darkElectrons(own, shot.darkTime, firstPixel, dark);
     const auto rate = shot.rate == nullptr ? std::span<const float>() : shot.rate->row(row);
     const Converter converter(digits_, errors_.nonLinearity);
     for (std::size_t x = 0; x < out.size(); ++x) {

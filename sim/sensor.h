@@ -13,7 +13,10 @@
 // Hot pixels, drawn from the serial too: one in 5000 has a dark current of 30 to 3000 e-/s at 25
 // degC, as many in each octave, and doubling each 7 K as the rest.
 
+#include <array>
 #include <cstdint>
+#include <memory>
+#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
@@ -86,6 +89,12 @@ private:
         std::uint64_t pixel = 0;
         double darkCurrent = 0;  // at 25 degC
     };
+    /// What the pixels of a row are of themselves: made once, where the row is read at all.
+    struct Row {
+        std::once_flag made;
+        std::vector<float> response;
+        std::vector<HotPixel> hot;  // by pixel
+    };
     /// What one exposure has for all its rows.
     struct Shot {
         const Image<float>* rate = nullptr;
@@ -97,15 +106,20 @@ private:
     };
     [[nodiscard]] std::vector<double> columnErrors(const View& view, std::uint64_t shotKey) const;
     void exposeRow(const Shot& shot, const View& view, int row, std::span<std::uint16_t> out) const;
-    /// Mean dark electrons of the pixels from `first` on.
-    void darkElectrons(double darkTime, std::uint64_t first, std::span<double> out) const;
+    /// Mean dark electrons of the row's pixels from `first` on.
+    static void darkElectrons(const Row& row,
+                              double darkTime,
+                              std::uint64_t first,
+                              std::span<double> out);
+
+    [[nodiscard]] const Row& rowOf(int y) const;
 
     std::uint64_t key_;
     std::uint64_t hotKey_;
     RigErrors errors_;
     Digits digits_;
-    Image<float> response_;      // of the whole sensor
-    std::vector<HotPixel> hot_;  // by pixel
+    std::shared_ptr<std::array<Row, kSensorSize.height>>
+        rows_;  // shared by copies, as they are one sensor's
 };
 
 }  // namespace gonio::sim

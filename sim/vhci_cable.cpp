@@ -54,6 +54,20 @@ Result<void> writeOnce(const std::filesystem::path& file, const std::string& tex
     return Error{ErrorKind::Busy, "vhci: attach " + text + ": " + why(error)};
 }
 
+/// Another program may take the free port first: then the next one.
+Result<void> attachToFreePort(const usbip::Exported& rig, int socket) {
+    constexpr int kTries = 4;
+    for (int tries = 1;; ++tries) {
+        const auto port = freePort(rig.speed == usbip::Speed::Super);
+        if (!port) return port.error();
+        const auto attached = writeOnce(vhciFolder() / "attach",
+                                        std::to_string(*port) + " " + std::to_string(socket) + " " +
+                                            std::to_string(rig.bus << 16 | rig.number) + " " +
+                                            std::to_string(static_cast<unsigned>(rig.speed)));
+        if (attached || tries == kTries) return attached;
+    }
+}
+
 }  // namespace
 
 std::filesystem::path vhciFolder() { return kFolder; }
@@ -71,7 +85,7 @@ std::optional<unsigned> freeVhciPort(const std::string& status, const std::strin
 }
 
 struct VhciCable::Line {
-    Line(LiveRig& rig, int descriptor, int pulls) : socket(descriptor) {
+    Line(LiveRig& rig, StreamSocket ours, int pulls) : socket(std::move(ours)) {
         thread = std::jthread([this, &rig, pulls](const std::stop_token& stop) {
             {
                 UsbipLine line(rig, socket, {}, pulls);
@@ -92,7 +106,9 @@ VhciCable::~VhciCable() = default;
 
 Result<std::unique_ptr<VhciCable>> VhciCable::attach(LiveRig& rig, unsigned number) {
     std::unique_ptr<VhciCable> cable(new VhciCable(rig, number));
-    if (auto plugged = cable->plug(); !plugged) return plugged.error();
+    if (const std::optional<int> pulls = cable->pullsIfPlugged()) {
+        if (auto plugged = cable->plug(*pulls); !plugged) return plugged.error();
+    }
     cable->follower_ =
         std::jthread([&one = *cable](const std::stop_token& stop) { one.follow(stop); });
     return cable;
@@ -103,33 +119,34 @@ void VhciCable::follow(const std::stop_token& stop) {
         std::this_thread::sleep_for(obstacle_.empty() ? kLook : kAgain);
         if (line_ && !line_->ended) continue;
         // A rig that the kernel has let go of by itself is not attached again until it is plugged.
-        const bool again =
-            rig_.with([this](FaultyUsb& usb) { return usb.plugged() && usb.pulls() != pulls_; });
-        if (!again) continue;
-        const auto plugged = plug();
+        const std::optional<int> pulls = pullsIfPlugged();
+        if (!pulls || *pulls == pulls_) continue;
+        const auto plugged = plug(*pulls);
         const std::string obstacle = plugged ? "" : plugged.error().message;
         if (!obstacle.empty() && obstacle != obstacle_) log::warning(obstacle);
         obstacle_ = obstacle;
     }
 }
 
-Result<void> VhciCable::plug() {
+/// How often it has been pulled, where it is plugged now.
+std::optional<int> VhciCable::pullsIfPlugged() {
+    return rig_.with([](FaultyUsb& usb) {
+        return usb.plugged() ? std::optional<int>(usb.pulls()) : std::nullopt;
+    });
+}
+
+/// A rig that was pulled meanwhile ends the line at once, and is plugged when it is back.
+Result<void> VhciCable::plug(int pulls) {
     line_.reset();
-    const int pulls = rig_.with([](FaultyUsb& usb) { return usb.pulls(); });
     const usbip::Exported rig = exported(rig_, number_);
-    const auto port = freePort(rig.speed == usbip::Speed::Super);
-    if (!port) return port.error();
     std::array<int, 2> ends{};
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
         return Error{ErrorKind::Internal, "vhci: socketpair: " + why(errno)};
-    auto line = std::make_unique<Line>(rig_, ends[0], pulls);
-    const auto words = std::to_string(*port) + " " + std::to_string(ends[1]) + " " +
-                       std::to_string(rig.bus << 16 | rig.number) + " " +
-                       std::to_string(static_cast<unsigned>(rig.speed));
-    const auto attached = writeOnce(vhciFolder() / "attach", words);
+    StreamSocket ours(ends[0]);
+    const auto attached = attachToFreePort(rig, ends[1]);
     ::close(ends[1]);  // the kernel has it
     if (!attached) return attached;
-    line_ = std::move(line);
+    line_ = std::make_unique<Line>(rig_, std::move(ours), pulls);
     pulls_ = pulls;
     return {};
 }

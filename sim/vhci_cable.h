@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -33,7 +34,8 @@ public:
 private:
     struct Line;
     VhciCable(LiveRig& rig, unsigned number);
-    Result<void> plug();
+    [[nodiscard]] std::optional<int> pullsIfPlugged();
+    Result<void> plug(int pulls);
     void follow(const std::stop_token& stop);
 
     LiveRig& rig_;

@@ -38,7 +38,7 @@ bool ReportFaults::put(const DueFault& fault, Nanoseconds now) {
         case FaultKind::UnknownReport: extra_.push_back(unknownReport()); return true;
         case FaultKind::StallReports:
             stalled_ = true;
-            stalledUntil_ = now + fault.lasting;
+            stalledUntil_ = std::max(stalledUntil_, now + fault.lasting);
             unheardSince_ = now;
             tally_.add(fault.kind);
             return true;

@@ -103,6 +103,11 @@ void setText(UsbReply& reply, std::string_view text) {
     }
 }
 
+/// Where the answer is that long: another malformation may have shortened it.
+void setByte(std::vector<std::uint8_t>& answer, std::size_t at, std::uint8_t value) {
+    if (at < answer.size()) answer[at] = value;
+}
+
 /// Where such a descriptor begins; the end where there is none.
 std::size_t placeOf(const std::vector<std::uint8_t>& all, std::uint8_t type, std::uint8_t third) {
     std::size_t at = 0;
@@ -165,14 +170,15 @@ void SpoiledAnswers::spoilConfig(std::vector<std::uint8_t>& descriptors) const {
         if (name == kConfigTotal) descriptors[kTotal] = descriptors[kTotal + 1] = 0xFF;
         if (name == kEndpointNone) {
             const auto interface = placeOf(descriptors, kInterfaceType, usb::kStreamInterface);
-            descriptors[interface + kEndpoints] = 0;
+            setByte(descriptors, interface + kEndpoints, 0);
             descriptors.resize(placeOf(descriptors, kEndpointType, usb::kBulkIn));
             descriptors[kTotal] = static_cast<std::uint8_t>(descriptors.size());
             descriptors[kTotal + 1] = static_cast<std::uint8_t>(descriptors.size() >> 8);
         }
         for (const ConfigByte& byte : kConfigBytes) {
-            if (byte.name == name)
-                descriptors[placeOf(descriptors, byte.type, byte.third) + byte.offset] = byte.value;
+            if (byte.name != name) continue;
+            const std::size_t there = placeOf(descriptors, byte.type, byte.third);
+            if (there < descriptors.size()) setByte(descriptors, there + byte.offset, byte.value);
         }
     }
 }
@@ -181,7 +187,10 @@ bool SpoiledAnswers::put(const DueFault& fault) {
     switch (fault.kind) {
         case FaultKind::NewerMinor: ++minor_; return true;
         case FaultKind::NewerMajor: ++major_; return true;
-        case FaultKind::Malform: malformed_.push_back(fault.name); return true;
+        case FaultKind::Malform:
+            if (std::ranges::find(malformed_, fault.name) == malformed_.end())
+                malformed_.push_back(fault.name);
+            return true;
         default: return false;
     }
 }

@@ -15,7 +15,7 @@ constexpr std::uint64_t kSession = 7;
 
 /// A simulated rig in this process.
 struct Opened {
-    explicit Opened(const std::string& serial) : door({.serial = serial, .seed = 3, .errors = {}}) {
+    explicit Opened(std::uint8_t binnings) : door({.seed = 3, .errors = {}, .binnings = binnings}) {
         auto opened = driver::Rig::open(door, kSession);
         EXPECT_TRUE(opened) << opened.error().message;
         if (opened) rig.emplace(std::move(*opened));
@@ -33,7 +33,7 @@ TEST(FinestBinning, IsTheLeastThatTheRigNames) {
 }
 
 TEST(FinestBinning, APlainRigIsReadPixelByPixel) {
-    Opened plain("SIM-0001");
+    Opened plain(sim::kAllBinnings);
     ASSERT_TRUE(plain.rig);
     const auto window = configureWindow(*plain.rig);
     ASSERT_TRUE(window) << window.error().message;
@@ -41,7 +41,7 @@ TEST(FinestBinning, APlainRigIsReadPixelByPixel) {
 }
 
 TEST(FinestBinning, ACoarseRigIsReadBinnedAndSendsNothingElse) {
-    Opened coarse("COARSE-1");
+    Opened coarse(sim::kCoarsestBinning);
     ASSERT_TRUE(coarse.rig);
     const auto window = configureWindow(*coarse.rig);
     ASSERT_TRUE(window) << window.error().message;

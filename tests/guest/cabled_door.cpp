@@ -11,6 +11,9 @@
 namespace gonio::guest_test {
 namespace {
 
+// An emulated processor has better to do than to look at all devices again and again.
+constexpr std::chrono::milliseconds kLook{50};
+
 class CabledDoor : public fault_test::RigDoor {
 public:
     explicit CabledDoor(const fault_test::RigSetup& setup)
@@ -21,15 +24,19 @@ public:
         if (!attached) throw std::runtime_error(attached.error().message);
         cable_ = std::move(*attached);
         // The kernel makes the nodes one after the other.
-        (void)test::waitUntil([&] { return driver::openUsb(wanted_).has_value(); });
+        (void)test::waitUntil(
+            [&] { return driver::openUsb(wanted_).has_value(); }, test::kPatience, kLook);
     }
     ~CabledDoor() override {
         transport_.reset();
         cable_.reset();
-        (void)test::waitUntil([&] {
-            const auto rigs = driver::listUsb(wanted_);
-            return rigs && rigs->empty();
-        });
+        (void)test::waitUntil(
+            [&] {
+                const auto rigs = driver::listUsb(wanted_);
+                return rigs && rigs->empty();
+            },
+            test::kPatience,
+            kLook);
     }
     CabledDoor(const CabledDoor&) = delete;
     CabledDoor& operator=(const CabledDoor&) = delete;

@@ -135,7 +135,7 @@ protected:
                        });
             },
             kPatience,
-            20ms))
+            50ms))
             << "not seen: " << count << " rigs";
     }
     void open() {

@@ -274,6 +274,8 @@ TEST_F(GuestRig, AnAutosuspendedRigIsWokenAndStaysAwakeWhileOpen) {
     std::ofstream(power / "control") << "auto";
     const auto suspended = [&] { return textOf(power / "runtime_status") == "suspended"; };
     ASSERT_TRUE(test::waitUntil(suspended, kPatience));
+    // One that is just falling asleep may not wake at once.
+    EXPECT_TRUE(test::waitUntil([] { return openRig().has_value(); }, kBack, 100ms));
     open();
     EXPECT_FALSE(suspended());
     same(litFrames(2));

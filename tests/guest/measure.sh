@@ -4,7 +4,7 @@
 # it gives and takes: 1 gives the calibrated store, 2 takes what was measured and answers whether it is what
 # its twin measured.
 #   measure.sh PORT_OF_RIG
-export GONIO_STORE=/daemon/store GONIO_CONFIG=/daemon/config LD_LIBRARY_PATH=/daemon/lib
+export GONIO_STORE=/daemon/store GONIO_CONFIG=/daemon/config
 fail() {
     echo "$1"
     cat /tmp/goniod.log /tmp/gonio.log 2>/dev/null
@@ -13,10 +13,14 @@ fail() {
 now() { cut -d ' ' -f 1 /proc/uptime; }
 gonio() { /daemon/gonio --quiet "$@" >/tmp/gonio.out 2>/tmp/gonio.log; }
 ip link set eth0 up && ip addr add 10.0.2.15/24 dev eth0 || fail "no network"
-nc 10.0.2.100 1 </dev/null | tar -x -C / || fail "no store"
+nc 10.0.2.100 1 </dev/null | tar -x -C /daemon || fail "no store"
 echo "the calibrated store is here after $(now) s"
-/daemon/usbip --tcp-port "$1" attach -r 10.0.2.2 -b 1-1 >/tmp/gonio.log 2>&1 || fail "usbip attach failed"
-/daemon/goniod --rig usb:COARSE-1 --profile /daemon/config/rig.toml >/tmp/goniod.log 2>&1 &
+tries=0 # the rigs of the other tests come and go meanwhile, and one may take the port that is free now
+until /daemon/usbip --tcp-port "$1" attach -r 10.0.2.2 -b 1-1 >/tmp/gonio.log 2>&1; do
+    tries=$((tries + 1))
+    [ $tries -lt 5 ] || fail "usbip attach failed"
+done
+/daemon/goniod --rig usb:SMALL-1 --profile /daemon/config/rig.toml >/tmp/goniod.log 2>&1 &
 daemon=$!
 tries=0
 until gonio --json status && grep -q '"state": "idle"' /tmp/gonio.out; do

@@ -2,7 +2,7 @@
 # Boots Debian's kernel under QEMU and runs the tests of the real USB stack in it:
 #   tests/guest/run_guest.sh BUILD [FILTER]
 # BUILD is the build tree that holds the programs; FILTER is googletest's, or `daemon` for the daemon's
-# measurement alone, which is else part of the list with GONIO_NIGHTLY. Exit code 77 with one line where it cannot run, 1
+# measurement alone; without it all are run. Exit code 77 with one line where it cannot run, 1
 # with GONIO_REQUIRE_GUEST=1. The kernel is fetched once, into build/guest-kernel.
 set -euo pipefail
 source=$(cd "$(dirname "$0")/../.." && pwd)
@@ -41,12 +41,12 @@ trap finish EXIT
 # meanwhile its twin is calibrated and measures in virtual time.
 network=()
 rig=''
-if [ "$filter" = daemon ] || { [ -z "$filter" ] && [ -n "${GONIO_NIGHTLY-}" ]; }; then
+if [ "$filter" = daemon ] || [ -z "$filter" ]; then
     "$source/tests/guest/twin.sh" "$build" "$work/twin" >"$work/twin.log" 2>&1 &
     measuring=$!
     : >"$work/serve.json"
     GONIO_CONFIG=$source/config "$build/bin/gonio" --store "$work/sim" --json sim serve --usbip --port 0 \
-        --serial COARSE-1 --seed 11 --systematic none --place "$(cat "$source/tests/guest/sample.txt")" \
+        --serial SMALL-1 --seed 11 --systematic none --place "$(cat "$source/tests/guest/sample.txt")" \
         >"$work/serve.json" 2>"$work/serve.log" &
     server=$!
     for _ in $(seq 600); do
@@ -58,8 +58,7 @@ if [ "$filter" = daemon ] || { [ -z "$filter" ] && [ -n "${GONIO_NIGHTLY-}" ]; }
     [ -n "$rig" ] || { cat "$work/serve.log"; echo "the rig of the guest's daemon is not served"; exit 1; }
     give="guestfwd=tcp:10.0.2.100:1-cmd:$source/tests/guest/twin.sh give $work/twin"
     take="guestfwd=tcp:10.0.2.100:2-cmd:$source/tests/guest/twin.sh take $work/twin"
-    # With all instructions that can be emulated, FMA above all: libm's last bits are then the host's.
-    network=(-cpu max -netdev "user,id=net,restrict=off,$give,$take" -device "e1000,netdev=net,romfile=")
+    network=(-netdev "user,id=net,restrict=off,$give,$take" -device "e1000,netdev=net,romfile=")
 fi
 
 root=$work/root
@@ -77,10 +76,13 @@ mkdir -p "$root$source/tests/faults"
 cp -r "$source/tests/faults/scripts" "$root$source/tests/faults/"
 printf 'root:x:0:0::/:/bin/sh\nnobody:x:65534:65534::/:/bin/sh\n' >"$root/etc/passwd"
 printf 'root:x:0:\nplugdev:x:46:\nnogroup:x:65534:\n' >"$root/etc/group"
-programs=("$build/tests/guest/guest_test")
+programs=("$build/tests/guest/guest_test" "$build"/bin/{goniod,gonio} "$(PATH=$PATH:/usr/sbin command -v usbip)")
+mkdir -p "$root/daemon/config"
+cp -r "$source"/config/{rigs,references,quality} "$source/tests/guest/rig.toml" "$root/daemon/config/"
 for program in "${programs[@]}"; do
-    strip -o "$root/$(basename "$program")" "$program" 2>/dev/null || cp "$program" "$root/"
+    strip -o "$root/daemon/$(basename "$program")" "$program" 2>/dev/null || cp "$program" "$root/daemon/"
 done
+mv "$root/daemon/guest_test" "$root/"
 # With the libraries that they name, flat in /lib.
 ldd "${programs[@]}" "$(command -v udevadm)" | awk '$2 == "=>" && $3 ~ /^\// { print $3 }' | sort -u |
     xargs -I{} cp -L {} "$root/lib/"
@@ -88,12 +90,14 @@ cp -L /lib64/ld-linux-x86-64.so.2 "$root/lib64/"
 (cd "$root" && find . | cpio -o -H newc --quiet) >"$work/initrd"
 echo "image of $(($(stat -c %s "$work/initrd") >> 20)) MiB there after $(since)"
 
+# What costs an emulated processor most, and protects nobody here, is off.
+options="quiet panic=-1 nokaslr mitigations=off tsc=reliable init_on_alloc=0 transparent_hugepage=always"
 accel=tcg
 if [ -r /dev/kvm ] && [ -w /dev/kvm ] && grep -qE '^flags.* (vmx|svm)( |$)' /proc/cpuinfo; then accel=kvm; fi
 boot() {
     timeout --foreground 300 qemu-system-x86_64 -accel "$1" -M pc -m "$memory" -smp 2 \
         -kernel "$kernel/vmlinux" -initrd "$work/initrd" -pidfile "$work/pid" \
-        -append "console=ttyS0 quiet panic=-1 nokaslr mitigations=off acpi=off ${filter:+gonio.filter=$filter} gonio.rig=$rig" \
+        -append "console=ttyS0 $options ${filter:+gonio.filter=$filter} gonio.rig=$rig" \
         -display none -nodefaults "${network[@]}" -no-reboot -serial stdio </dev/null 2>&1 | sed -u 's/\r$//' | tee "$work/serial"
 }
 ready() { grep -q '^GUEST ready' "$work/serial"; }

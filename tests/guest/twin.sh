@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
 # The host's side of the daemon's measurement in the guest:
-#   tests/guest/twin.sh BUILD FOLDER    calibrates a rig in virtual time, packs what the guest's daemon
-#                                       needs (programs, libraries, the calibrated store), and measures the
-#                                       sample as it must
+#   tests/guest/twin.sh BUILD FOLDER    calibrates a rig in virtual time, packs the calibrated store for the
+#                                       guest's daemon, and measures the sample as it must
 #   tests/guest/twin.sh give FOLDER     what is packed, on stdout, once it is there
 #   tests/guest/twin.sh take FOLDER     what the guest measured, from stdin; on stdout whether it is equal
 set -euo pipefail
@@ -46,8 +45,8 @@ compare() {
 
 case $1 in
     give)
-        await "$folder/daemon.tar"
-        exec cat "$folder/daemon.tar"
+        await "$folder/store.tar"
+        exec cat "$folder/store.tar"
         ;;
     take)
         cat >"$folder/guest.gonio"
@@ -59,12 +58,11 @@ case $1 in
 esac
 
 bin=$(realpath "$1/bin")
-root=$folder/packed/daemon
-mkdir -p "$root"/{lib,config}
+mkdir -p "$folder"
 echo "$bin" >"$folder/bin"
 daemon=
 trap '[ -z "$daemon" ] || kill "$daemon" 2>/dev/null || true; wait; [ -e "$folder/twin.csv" ] || : >"$folder/failed"' EXIT
-store=$root/store
+store=$folder/store
 export GONIO_STORE=$store GONIO_SOCKET=$folder/goniod.sock
 gonio() { "$bin/gonio" --quiet "$@"; }
 begin() {
@@ -83,7 +81,7 @@ end() {
     daemon=
 }
 begin
-gonio sim place mirror --serial COARSE-1 --seed 11 --systematic none
+gonio sim place mirror --serial SMALL-1 --seed 11 --systematic none
 gonio calibrate mirror
 for tile in black white; do
     gonio sim place "$tile"
@@ -97,13 +95,8 @@ end
 mkdir "$folder/other"
 mv "$store/sim.json" "$folder/other/"
 find "$store" -name '*.graw' -exec mv {} "$folder/other/" \;
-cp -r "$config"/{rigs,references,quality} "$here/rig.toml" "$root/config/"
-programs=("$bin/goniod" "$bin/gonio" "$(PATH=$PATH:/usr/sbin command -v usbip)")
-for program in "${programs[@]}"; do strip -o "$root/$(basename "$program")" "$program"; done
-ldd "${programs[@]}" | awk '$2 == "=>" && $3 ~ /^\// { print $3 }' | sort -u |
-    xargs -I{} cp -L {} "$root/lib/"
-tar -c -C "$folder/packed" -f "$folder/daemon.part" .
-mv "$folder/daemon.part" "$folder/daemon.tar"
+tar -c -C "$folder" -f "$folder/store.part" store
+mv "$folder/store.part" "$folder/store.tar"
 mv "$folder/other/sim.json" "$store/"
 
 begin
