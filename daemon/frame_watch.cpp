@@ -33,6 +33,12 @@ std::string listed(std::span<const OddFrame> odd, bool dropped) {
     return count > kMost ? list + "; and " + std::to_string(count - kMost) + " more" : list;
 }
 
+double meanOf(const Image<float>& image) {
+    double sum = 0;
+    for (const float value : image.pixels()) sum += static_cast<double>(value);
+    return sum / static_cast<double>(image.size().pixels());
+}
+
 /// Of the same frame of the plan, in two attempts (driver/capture_ids.h). A simulated rig draws its
 /// noise by the plan, so that a sound frame taken again is the same picture there.
 bool isTakenAgain(const Frame& frame, const Frame& before) {
@@ -63,8 +69,12 @@ WhiteRates whiteRates(const PlacementSignals& white, const Window& window) {
     return rates;
 }
 
-void FrameWatch::expect(const proc::DarkLibrary& darks, WhiteRates white) {
+void FrameWatch::expect(const proc::DarkLibrary& darks,
+                        WhiteRates white,
+                        const proc::DarkLibrary* ofThisRun) {
     darks_ = &darks;
+    ofThisRun_ = ofThisRun;
+    blacks_.clear();
     white_ = std::move(white);
 }
 
@@ -88,19 +98,33 @@ std::optional<Setback::Cause> FrameWatch::wrong(std::optional<State> state,
         return Cause::Repeated;
     if (proc::isBlank(frame, noise_)) return Cause::Blank;
     if (!state) return std::nullopt;
+    if (const auto cause = disagrees(*state, frame)) return cause;
     if (frame.index == 0 && lacksLight(*state, frame)) return Cause::Unlit;
-    return disagrees(*state, frame);
+    return std::nullopt;
 }
 
 std::optional<Setback::Cause> FrameWatch::disagrees(State state, const Frame& frame) const {
     const Frame* const before = first_ ? earlier_ : &*last_;
     if (before == nullptr || before->led != frame.led || before->levels[state.band] == 0)
         return std::nullopt;
-    switch (proc::agreement(frame, *before, state.band, noise_)) {
+    switch (proc::agreement(shown(frame), shown(*before), state.band, noise_)) {
         case proc::Agreement::Agrees: return std::nullopt;
         case proc::Agreement::Reflex: return Cause::Reflex;
         default: return Cause::Exposure;
     }
+}
+
+/// By the mean dark frame of its exposure, where there is one.
+proc::Shown FrameWatch::shown(const Frame& frame) const {
+    constexpr double kOfDarkFrame = 0.1;  // DN: a sensor's black level wanders
+    proc::Shown shown{.frame = &frame, .black = {.dn = static_cast<double>(frame.blackLevel)}};
+    if (ofThisRun_ == nullptr) return shown;
+    const Result<const proc::DarkFrame*> dark = ofThisRun_->find(frame);
+    if (!dark) return shown;
+    auto& known = blacks_[frame.exposure.granted];
+    if (!known) known = meanOf((*dark)->mean);
+    shown.black = {.dn = *known, .u = kOfDarkFrame, .holdsLeaks = true};
+    return shown;
 }
 
 bool FrameWatch::lacksLight(State state, const Frame& frame) const {

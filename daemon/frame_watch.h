@@ -4,6 +4,7 @@
 // of each capture against the light that it must show.
 
 #include <array>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,6 +13,7 @@
 #include "daemon/attendance.h"
 #include "daemon/rig_calibration.h"
 #include "daemon/state.h"
+#include "proc/quality/frame_check.h"
 #include "proc/quality/verdict.h"
 #include "proc/radiance/dark.h"
 
@@ -41,8 +43,11 @@ class FrameWatch {
 public:
     explicit FrameWatch(const proc::SensorNoise& noise) : noise_(noise) {}
 
-    /// From now on a lit frame that is as good as dark is odd. `darks` is borrowed.
-    void expect(const proc::DarkLibrary& darks, WhiteRates white);
+    /// From now on a lit frame that is as good as dark is odd. `darks` is borrowed, and so are
+    /// those of them that were taken of the same scene just now: they say where no light is.
+    void expect(const proc::DarkLibrary& darks,
+                WhiteRates white,
+                const proc::DarkLibrary* ofThisRun = nullptr);
     /// A bracket begins. `earlier`: a sound frame of it, taken before; borrowed until the next one.
     void begin(const Frame* earlier = nullptr);
     /// What is odd about the next frame of the bracket; one that is not is held against the next.
@@ -53,9 +58,12 @@ private:
     [[nodiscard]] std::optional<Cause> wrong(std::optional<State> state, const Frame& frame) const;
     [[nodiscard]] std::optional<Cause> disagrees(State state, const Frame& frame) const;
     [[nodiscard]] bool lacksLight(State state, const Frame& frame) const;
+    [[nodiscard]] proc::Shown shown(const Frame& frame) const;
 
     proc::SensorNoise noise_;
     const proc::DarkLibrary* darks_ = nullptr;
+    const proc::DarkLibrary* ofThisRun_ = nullptr;
+    mutable std::map<Nanoseconds, std::optional<double>> blacks_;  ///< means of those; DN
     WhiteRates white_;
     std::optional<Frame> last_;       ///< that was sound, of whatever bracket
     bool first_ = true;               ///< in its bracket: the last one is of another

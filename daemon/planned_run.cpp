@@ -10,6 +10,7 @@
 namespace gonio::daemon {
 namespace {
 
+constexpr int kUnsound = -1;    // breaks of pilots that are not to be used
 constexpr int kFirstDarks = 2;  // of each of the pilots' exposures, while the host plans
 
 Microseconds asked(Seconds exposure) { return std::chrono::round<Microseconds>(exposure); }
@@ -112,7 +113,11 @@ Result<const proc::Plan*> PlannedRun::plan() {
     const Result<Window> window = configureWindow(bench_.rig);
     if (!window) return window.error();
     if (Result<void> fit = fits(bench_.corrections, *window); !fit) return fit.error();
-    if (holdsDarks(*window)) rig_.darkFramesHeld = bench_.darks.front().frames;
+    if (holdsDarks(*window)) {
+        rig_.darkFramesHeld = bench_.darks.front().frames;
+        for (const proc::DarkFrame& dark : bench_.darks) darks_.add(dark);
+        expectLight(*window);
+    }
     seeing_.emplace([this, window = *window]() -> Result<void> {
         const proc::LensMap& map = references_.lens.fit.map;
         binning_.emplace(map, window, kField);
@@ -121,6 +126,11 @@ Result<const proc::Plan*> PlannedRun::plan() {
     });
     if (Result<void> taken = takePilots(); !taken) return taken.error();
     return &*plan_;
+}
+
+/// By `darks_`: from now on a pilot, or a capture, must show some light.
+void PlannedRun::expectLight(const Window& window, const proc::DarkLibrary* ofThisRun) {
+    sequencer_.watch().expect(darks_, whiteRates(references_.white.signals, window), ofThisRun);
 }
 
 /// Pilots state by state, each learnt from beside the next; then dark frames, beside the planning.
@@ -258,10 +268,7 @@ Result<void> PlannedRun::takeDarks() {
     darksBefore_.reset();
     std::map<Microseconds, const proc::DarkFrame*> held;
     if (rig_.darkFramesHeld > 0) {
-        for (const proc::DarkFrame& dark : bench_.darks) {
-            held[dark.exposure.requested] = &dark;
-            darks_.add(dark);
-        }
+        for (const proc::DarkFrame& dark : bench_.darks) held[dark.exposure.requested] = &dark;
     }
     for (const auto& [exposure, sums] : darkSums_) {
         Result<proc::DarkFrame> dark = sums.sums.mean();
@@ -300,33 +307,44 @@ std::vector<PlannedRun::Planned> PlannedRun::allCaptures() {
 /// From the state at hand on, each behind its pilots where those are stale.
 std::vector<PlannedRun::Planned> PlannedRun::left(const Taking& now) const {
     std::vector<Planned> list;
+    std::size_t next = now.open;  // the first state that the list has nothing of
     for (const Planned& planned : now.all) {
         if (planned.state < now.open) continue;
-        const bool again = planned.state < states_.size() && stale(planned.state);
-        if (again && !planned.shot.joins) {
-            for (const KnownShot& pilot : pilots_[planned.state].shots) {
-                list.push_back({.shot = pilot,
-                                .state = planned.state,
-                                .count = planned.count - 1,
-                                .pilot = true});
+        for (; next <= planned.state && next < states_.size(); ++next) {
+            // Pilots alone are of one piece, whatever has come after them.
+            const bool alone = next < planned.state;
+            if (alone ? pilots_[next].breaks != kUnsound : !stale(next)) continue;
+            for (const KnownShot& pilot : pilots_[next].shots) {
+                list.push_back(
+                    {.shot = pilot, .state = next, .count = planned.count - 1, .pilot = true});
             }
         }
         list.push_back(planned);
-        list.back().shot.joins = again || planned.shot.joins;
+        if (planned.state < states_.size() && stale(planned.state)) list.back().shot.joins = true;
     }
     return list;
+}
+
+/// There were no dark frames of this run to hold them against as they came.
+void PlannedRun::reviewPilots() {
+    for (std::size_t state = 0; state < states_.size(); ++state) {
+        if (!sequencer_.review(states_[state], pilots_[state].frames))
+            pilots_[state].breaks = kUnsound;
+    }
 }
 
 Result<Captured> PlannedRun::takeStates() {
     const Window window = pilots_.front().frames.front().window;
     Gathering gathering(bench_.rig,
+                        bench_.attendance,
                         {.darks = darks_,
                          .binning = *binning_,
                          .glare = *glare_,
                          .corrections = bench_.corrections,
                          .profile = bench_.profile,
                          .clock = bench_.clock});
-    sequencer_.watch().expect(darks_, whiteRates(references_.white.signals, window));
+    expectLight(window, &freshDarks_);
+    reviewPilots();
     Taking now{.gathering = gathering, .all = allCaptures()};
     do {
         now.stale = false;

@@ -6,7 +6,8 @@
 // meanwhile. The same placement always makes the same captures, however fast the host is.
 //
 // Pilots and captures of a state are one bracket: where the rig has booted between them, or would
-// not light, its pilots are taken again before its captures, by their own plan steps.
+// not light, its pilots are taken again before its captures, by their own plan steps. So they are
+// where the dark frames show that one of them is not what was asked for; the plan stays.
 //
 // Memory: the pilots, three pictures of 2 MB a state, until their state is captured; then its
 // merged picture, 10 MB; and the sums of two states (merge_accumulator.h).
@@ -77,6 +78,8 @@ private:
     [[nodiscard]] Result<void> openState(Taking& now);
     [[nodiscard]] Result<void> advanceTo(Taking& now, std::size_t state);
     [[nodiscard]] Result<void> add(Taking& now, const Planned& planned, Frame&& frame);
+    void expectLight(const Window& window, const proc::DarkLibrary* ofThisRun = nullptr);
+    void reviewPilots();
     [[nodiscard]] Result<void> takePilots();
     [[nodiscard]] Result<void> learn(std::size_t state);
     [[nodiscard]] Result<void> settle();

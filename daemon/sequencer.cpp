@@ -66,7 +66,14 @@ Result<driver::Capture> Sequencer::capture(const driver::CaptureRequest& request
                                            const driver::ArmAhead& ahead,
                                            const driver::FrameSink& sink) {
     attendance_.alive();
-    Result<driver::Capture> taken = rig_.capture(request, ahead, sink);
+    driver::FrameSink attended;
+    if (sink) {
+        attended = [&](Frame&& frame) {
+            attendance_.alive();
+            return sink(std::move(frame));
+        };
+    }
+    Result<driver::Capture> taken = rig_.capture(request, ahead, attended);
     if (taken && taken->recaptures > 0) brackets_.rejected(taken->evidence);
     return taken;
 }
@@ -89,13 +96,16 @@ Result<std::vector<Frame>> Sequencer::expose(State state,
                                              int frames) {
     std::vector<Frame> all;
     const Result<void> taken = whole(state, [&]() -> Result<void> {
-        Result<driver::Capture> one =
-            capture(numbered(toTake(state, {.level = level, .exposure = exposure}, frames)));
-        if (!one) return one.error();
-        for (const Frame& frame : one->frames)
-            if (Result<void> sound = brackets_.look(state, frame); !sound) return sound;
-        all = std::move(one->frames);
-        return {};
+        all.clear();
+        const auto one =
+            capture(numbered(toTake(state, {.level = level, .exposure = exposure}, frames)),
+                    {},
+                    [&](Frame&& frame) -> Result<void> {
+                        if (auto sound = brackets_.look(state, frame); !sound) return sound;
+                        all.push_back(std::move(frame));
+                        return {};
+                    });
+        return one ? Result<void>() : one.error();
     });
     if (!taken) return taken.error();
     return all;

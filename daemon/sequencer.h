@@ -86,6 +86,9 @@ public:
                                                   const std::function<Result<void>()>& done);
 
     /// whole_brackets.h
+    [[nodiscard]] bool review(State state, std::span<const Frame> frames) {
+        return brackets_.review(state, frames);
+    }
     [[nodiscard]] int breaks() const { return brackets_.breaks(); }
     /// What frames are held against; `begin` of a sink may tell it more.
     [[nodiscard]] FrameWatch& watch() { return brackets_.watch(); }

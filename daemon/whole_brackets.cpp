@@ -26,8 +26,12 @@ WholeBrackets::WholeBrackets(driver::Rig& rig,
 
 Result<void> WholeBrackets::take(std::optional<State> state,
                                  const std::function<Result<void>()>& attempt) {
-    state_ = state;
-    boots_ = oddAttempts_ = 0;
+    open(state);
+    std::erase_if(reviewed_, [&](const OddFrame& odd) {
+        const bool its = odd.state == state;
+        attemptsLike(odd) += its ? 1 : 0;
+        return its;
+    });
     while (true) {
         isOdd_ = false;
         watch_.begin();
@@ -35,6 +39,7 @@ Result<void> WholeBrackets::take(std::optional<State> state,
         Result<void> taken = warmUp(state);
         if (taken) taken = attempt();
         if (taken) return taken;  // of one piece: a boot that was seen after it is the next one's
+        if (taken.error().kind == ErrorKind::Interrupted) return taken;  // by whoever asked for it
         if (takeReboot()) {
             const std::string& why = taken.error().message;
             if (++boots_ > kBoots) {
@@ -49,9 +54,21 @@ Result<void> WholeBrackets::take(std::optional<State> state,
     }
 }
 
+void WholeBrackets::open(std::optional<State> state) {
+    state_ = state;
+    boots_ = oddAttempts_ = unlitAttempts_ = 0;
+}
+
+bool WholeBrackets::review(State state, std::span<const Frame> frames) {
+    open(state);
+    watch_.begin();
+    return std::ranges::all_of(frames,
+                               [&](const Frame& frame) { return look(state, frame).has_value(); });
+}
+
 Result<void> WholeBrackets::mayTakeAgain(const Error& why) {
     if (isOdd_) {
-        if (oddAttempts_++ == 0) return {};
+        if (attemptsLike(odd_.back())++ == 0) return {};
         return Error{why.kind,
                      "taken again, and once more not what was asked for: " + why.message + "; " +
                          kOddFramesCure,
@@ -72,8 +89,7 @@ std::optional<Error> WholeBrackets::passes(const Error& why) {
     if (why.deviceStatus == kInterlock || why.deviceStatus == kOverTemp) return why;
     if (why.deviceStatus != 0 || why.kind != ErrorKind::Device) return std::nullopt;
     const Result<driver::Status> now = rig_.status();
-    const bool open =
-        now && (now->interlock & driver::interlock::kMayLight) != driver::interlock::kMayLight;
+    const bool open = now && !driver::interlock::mayLight(now->interlock);
     if (!open) return std::nullopt;
     return Error{why.kind, why.message, kInterlock};
 }
@@ -81,11 +97,11 @@ std::optional<Error> WholeBrackets::passes(const Error& why) {
 Result<void> WholeBrackets::look(std::optional<State> state, const Frame& frame) {
     std::optional<OddFrame> odd = watch_.see(state, frame);
     if (!odd) return {};
-    odd->dropped = odd->kind != Cause::Unlit || oddAttempts_ == 0;
+    odd->dropped = odd->kind != Cause::Unlit || unlitAttempts_ == 0;
     odd_.push_back(*odd);
-    const char* const then = !odd->dropped       ? "; taken for what lies there"
-                             : oddAttempts_ == 0 ? kAgain
-                                                 : ", once more";
+    const char* const then = !odd->dropped             ? "; taken for what lies there"
+                             : attemptsLike(*odd) == 0 ? kAgain
+                                                       : ", once more";
     tell(odd->kind, odd->text() + then);
     if (!odd->dropped) return {};
     isOdd_ = true;

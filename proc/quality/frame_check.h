@@ -23,19 +23,34 @@ namespace gonio::proc {
 /// How a picture goes with one before it, of the same scene and LED.
 enum class Agreement {
     Agrees,    ///< or nothing can be said
-    Darker,    ///< less than 0.6 of the light that its exposure should have brought
-    Brighter,  ///< more than 1 / 0.6 of it
+    Darker,    ///< less than 0.6 of the light that it should have brought at least
+    Brighter,  ///< more than 1 / 0.6 of what it should have brought at most
     Reflex     ///< a part is saturated that the other shows to be dim
 };
 
-/// `frame` against what `before` foretells, pixel by pixel: its light in the proportion of the
-/// granted exposures and, of another level, of the levels. What the sensor may add to either
-/// exposure (15 us), the noise of both, and a black level that is off by half a DN explain what
-/// they can. Of another level only a reflex is told, and light that comes with any level is let be.
-/// Of every second row and column; a reflex is 12 such pixels or more. Agrees where the windows
-/// differ.
-[[nodiscard]] Agreement agreement(const Frame& frame,
-                                  const Frame& before,
+/// What pixels say on average where there is no light, and how far that may be off; DN.
+struct BlackLevel {
+    double dn = 0, u = 0.5;
+    bool holdsLeaks = false;  ///< the light that comes with any level is in it
+};
+
+/// A picture, borrowed, and its black level.
+struct Shown {
+    const Frame* frame = nullptr;
+    BlackLevel black{};
+};
+
+/// `frame` against what `before` foretells: its light in the proportion of the granted exposures.
+/// Of another level it is told only where the higher one of the two shows less light, as light may
+/// come with any level; where the black levels hold that, where the two are more than a factor of
+/// three off the levels, as an LED's light does not go quite with its current. What the sensor may
+/// add to one of two exposures (15 us), the noise of both, and black levels that are off explain
+/// what they can. It is told of the whole picture, or of three blocks of 4 x 4 pixels, which see a
+/// small highlight. A reflex is three blocks or more, half of each at least at full scale, of which
+/// the whole block had surely less than 0.7 of the light that this wants. Agrees where windows or
+/// gains differ.
+[[nodiscard]] Agreement agreement(const Shown& frame,
+                                  const Shown& before,
                                   Band band,
                                   const SensorNoise& noise);
 

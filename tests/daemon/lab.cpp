@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "daemon/planned_run.h"
 #include "sim/reference_errors.h"
 #include "sim/rig_errors.h"
 
@@ -15,7 +16,8 @@ constexpr int kDarkFrames = 4;
 Lab::Lab(const std::string& rigErrors,
          const std::string& systematic,
          std::uint64_t seed,
-         int frames)
+         int frames,
+         sim::DeviceConfig kind)
     : frames_(frames) {
     auto profile = readProfile(defaultProfile());
     EXPECT_TRUE(profile) << profile.error().message;
@@ -27,8 +29,10 @@ Lab::Lab(const std::string& rigErrors,
     EXPECT_TRUE(rig) << rig.error().message;
     const auto errors = sim::ReferenceErrors::parse(systematic, seed);
     EXPECT_TRUE(errors) << errors.error().message;
-    door_ = std::make_unique<sim::InProcessDoor>(
-        sim::DeviceConfig{.serial = "SIM-0001", .seed = seed, .errors = *errors, .rig = *rig});
+    kind.seed = seed;
+    kind.errors = *errors;
+    kind.rig = *rig;
+    door_ = std::make_unique<sim::InProcessDoor>(kind);
     auto opened = driver::Rig::open(*door_, seed);
     EXPECT_TRUE(opened) << opened.error().message;
     rig_.emplace(std::move(*opened));
@@ -65,6 +69,46 @@ void Lab::place(const std::string& what) {
         placement.surface = std::move(*model);
     }
     door_->device().place(std::move(placement));
+}
+
+std::vector<proc::DarkFrame> Lab::meanDarks() {
+    std::vector<proc::DarkFrame> darks;
+    for (const Microseconds exposure : profile_.exposures) {
+        const auto taken = rig_->capture(
+            {.planStep = nextPlanStep_++, .exposure = exposure, .frames = kDarkFrames});
+        EXPECT_TRUE(taken) << taken.error().message;
+        auto mean = proc::averageDark(taken->frames, profile_.noise);
+        EXPECT_TRUE(mean) << mean.error().message;
+        darks.push_back(std::move(*mean));
+    }
+    return darks;
+}
+
+Lab::Planned Lab::planned(const std::string& what,
+                          const CaptureGoal& goal,
+                          const std::string& faults,
+                          Darks darks) {
+    constexpr std::uint64_t kFirstStep = 1'000'000;  // behind whatever was taken before
+    place(what);
+    EXPECT_TRUE(configureWindow(*rig_));
+    nextPlanStep_ = kFirstStep;
+    Planned made;
+    Bench here = bench();
+    if (darks == Darks::Held) here.darks = meanDarks();
+    here.glare = lens_->glare;
+    here.attendance.setback = [&](const Setback& one) { made.setbacks.push_back(one); };
+    const RigReferences references = this->references(Lower::Black);
+    PlannedRun run(here, references, goal.plan());
+    auto script = sim::FaultScript::parse(faults);
+    EXPECT_TRUE(script) << script.error().message;
+    door_->usb().play(std::move(*script));
+    const auto plan = run.plan();
+    EXPECT_TRUE(plan) << plan.error().message;
+    auto captured = run.capture();
+    EXPECT_TRUE(captured) << captured.error().message;
+    door_->usb().play({});
+    made.captured = std::move(*captured);
+    return made;
 }
 
 Lab::Frames Lab::frames(const std::string& what, const BracketPlan& plan) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "daemon/capture_goal.h"
 #include "daemon/measurement.h"
 #include "driver/steady_clock.h"
 #include "proc/models/spec.h"
@@ -17,11 +18,13 @@ namespace gonio::daemon::test {
 class Lab {
 public:
     /// `rigErrors` as on the command line; `systematic`: none, random, ... (references). `frames`:
-    /// of each exposure of a reference; a job takes 8.
+    /// of each exposure of a reference; a job takes 8. `kind`: the rig, but for its errors and
+    /// seed.
     Lab(const std::string& rigErrors,
         const std::string& systematic,
         std::uint64_t seed,
-        int frames = 8);
+        int frames = 8,
+        sim::DeviceConfig kind = {});
 
     /// Takes the lens map.
     void calibrateMirror();
@@ -50,6 +53,21 @@ public:
                                              Glare glare = Glare::TakenOff) const;
     [[nodiscard]] RigReferences references(Lower lower, Glare glare = Glare::TakenOff) const;
 
+    /// What a plan makes of a sample, always by the same plan steps, while `faults` are played
+    /// (docs/fault-scripts.md). With a dark library of today, or without.
+    enum class Darks {
+        Held,
+        None
+    };
+    struct Planned {
+        Captured captured;
+        std::vector<Setback> setbacks;
+    };
+    [[nodiscard]] Planned planned(const std::string& what,
+                                  const CaptureGoal& goal,
+                                  const std::string& faults,
+                                  Darks darks = Darks::Held);
+
     /// The frames of a sample, state by state, before anything is made of them.
     struct Bracket {
         State state;
@@ -68,6 +86,7 @@ public:
 private:
     [[nodiscard]] Bench bench();
     void place(const std::string& what);
+    [[nodiscard]] std::vector<proc::DarkFrame> meanDarks();
     /// By Glare.
     using BothWays = std::array<ReferenceRecord, 2>;
     [[nodiscard]] BothWays reference(const std::string& what, const BracketPlan& plan);

@@ -66,11 +66,14 @@ Frame shown(Frame frame, Microseconds exposure, std::uint16_t level = 65535) {
     return frame;
 }
 
+Agreement agrees(const Frame& frame, const Frame& before, double uOfBlack = 0.5) {
+    const BlackLevel black{.dn = 60, .u = uOfBlack};
+    return agreement(
+        {.frame = &frame, .black = black}, {.frame = &before, .black = black}, Band::G, kNoise);
+}
+
 TEST(FrameCheck, LightGoesWithTheExposure) {
     using namespace std::chrono_literals;
-    const auto agrees = [](const Frame& frame, const Frame& before) {
-        return agreement(frame, before, Band::G, kNoise);
-    };
     const Frame before = shown(picture(1, 500), 1000us);
     EXPECT_EQ(agrees(shown(picture(2, 1000), 2000us), before), Agreement::Agrees);
     EXPECT_EQ(agrees(shown(picture(2, 500), 2000us), before), Agreement::Darker);
@@ -81,13 +84,45 @@ TEST(FrameCheck, LightGoesWithTheExposure) {
     EXPECT_EQ(agrees(shown(picture(2, 20'000), 40'000us), before), Agreement::Agrees);
     EXPECT_EQ(agrees(shown(picture(2, 850), 34us), shown(picture(1, 500), 20us)),
               Agreement::Agrees);
-    EXPECT_EQ(agrees(shown(picture(2, 850), 20us), shown(picture(1, 500), 20us)), Agreement::Agrees)
-        << "a sensor may add 14 us to each";
+    EXPECT_EQ(agrees(shown(picture(2, 850), 20us), shown(picture(1, 500), 20us)),
+              Agreement::Brighter)
+        << "a sensor adds the same to the same exposure";
     EXPECT_EQ(agrees(shown(picture(2, 0.4), 2000us), shown(picture(1, 0.1), 1000us)),
               Agreement::Agrees)
         << "too dark to tell";
     EXPECT_EQ(agrees(shown(picture(2, 500), 2000us, 30000), before), Agreement::Agrees)
         << "of another level light that leaks in may be most of it";
+}
+
+TEST(FrameCheck, AHigherLevelBringsMoreLight) {
+    using namespace std::chrono_literals;
+    constexpr std::uint16_t kDim = 164;
+    const Frame dim = shown(picture(1, 100), 20us, kDim), full = shown(picture(2, 100), 20us);
+    EXPECT_EQ(agrees(full, dim), Agreement::Agrees) << "all of it may come with any level";
+    const Frame late = shown(picture(3, 5'000), 20us, kDim);  // really of the capture before
+    EXPECT_EQ(agrees(full, late), Agreement::Darker);
+    EXPECT_EQ(agrees(late, full), Agreement::Brighter);
+    const Frame saturated = shown(picture(3, 1e6), 20us, kDim);
+    EXPECT_EQ(agrees(full, saturated), Agreement::Darker);
+    EXPECT_EQ(agrees(saturated, full), Agreement::Reflex);
+    EXPECT_EQ(agrees(shown(picture(4, 1e6), 20us), saturated), Agreement::Agrees);
+    EXPECT_EQ(agrees(shown(picture(4, 500), 1000us), shown(picture(5, 500), 1000us, kDim)),
+              Agreement::Agrees)
+        << "most of the light may come with any level";
+    EXPECT_EQ(agrees(shown(picture(4, 250), 1000us), shown(picture(5, 500), 1000us, kDim)),
+              Agreement::Darker);
+    EXPECT_EQ(agrees(shown(picture(4, 0.1), 20us), shown(picture(5, 0.4), 20us, kDim)),
+              Agreement::Agrees)
+        << "too dark to tell";
+}
+
+TEST(FrameCheck, ADimPictureForetellsAsMuchAsItsBlackLevelIsKnown) {
+    using namespace std::chrono_literals;
+    const Frame dim = shown(picture(1, 1), 20us);  // 0.4 DN
+    const Frame tooDark = shown(picture(2, 20), 5000us), sound = shown(picture(2, 500), 5000us);
+    EXPECT_EQ(agrees(tooDark, dim), Agreement::Agrees) << "half a DN is most of it";
+    EXPECT_EQ(agrees(tooDark, dim, 0.1), Agreement::Darker);
+    EXPECT_EQ(agrees(sound, dim, 0.1), Agreement::Agrees);
 }
 
 TEST(FrameCheck, SaturationWhereItWasDimIsAReflex) {
@@ -99,14 +134,12 @@ TEST(FrameCheck, SaturationWhereItWasDimIsAReflex) {
         return frame;
     };
     const Frame before = shown(picture(1, 500), 1000us);
-    EXPECT_EQ(agreement(with(7), before, Band::G, kNoise), Agreement::Reflex);
-    EXPECT_EQ(agreement(with(3), before, Band::G, kNoise), Agreement::Agrees)
-        << "a particle's trace";
+    EXPECT_EQ(agrees(with(7), before), Agreement::Reflex);
+    EXPECT_EQ(agrees(with(3), before), Agreement::Agrees) << "a particle's trace";
     const Frame dim = shown(picture(1, 100), 1000us, 6554);
-    EXPECT_EQ(agreement(with(7), dim, Band::G, kNoise), Agreement::Reflex) << "of any level";
+    EXPECT_EQ(agrees(with(7), dim), Agreement::Reflex) << "of any level";
     const Frame bright = shown(picture(1, 6000), 1000us);
-    EXPECT_EQ(agreement(shown(picture(2, 12'000), 2000us), bright, Band::G, kNoise),
-              Agreement::Agrees)
+    EXPECT_EQ(agrees(shown(picture(2, 12'000), 2000us), bright), Agreement::Agrees)
         << "it was foretold";
 }
 
