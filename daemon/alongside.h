@@ -38,9 +38,6 @@ public:
         }
         return answer_.get();
     }
-    Result<Value> await(driver::Rig& rig) {
-        return await(rig, [] {});
-    }
 
 private:
     // The rig wants a PING at least every heartbeat / 4, 500 ms as the link claims it.
@@ -52,12 +49,7 @@ private:
 template <class Task>
 Alongside(Task) -> Alongside<typename AsResult<std::invoke_result_t<Task&>>::Type::value_type>;
 
-/// The task's value; the rig is kept alive until it is there.
-template <class Task>
-[[nodiscard]] auto alongside(driver::Rig& rig, Task task) {
-    return Alongside(std::move(task)).await(rig);
-}
-
+/// The task's value; until it is there the rig is kept alive, and `waiting` is called as often.
 template <class Waiting, class Task>
 [[nodiscard]] auto alongside(driver::Rig& rig, Waiting waiting, Task task) {
     return Alongside(std::move(task)).await(rig, std::move(waiting));

@@ -15,8 +15,8 @@ namespace gonio::daemon {
 /// What the daemon's status says.
 struct DaemonSeen {
     int pid = 0;
-    std::string rigKind{};    ///< "sim" or "usb"
-    std::string rigSerial{};  ///< empty: it has no rig
+    std::string rigKind{};    ///< "sim", "usb" or "replay"
+    std::string rigSerial{};  ///< of the rig that it had last; empty: it has seen none yet
     std::string obstacle{};   ///< why it has no rig, or none that may be lit
 };
 

@@ -158,10 +158,6 @@ Finding temperature(const driver::Status& status, const driver::Limits& limits) 
         verdict == Verdict::Ok ? "" : "outside no frame is valid: air, shade, or time to warm up"};
 }
 
-bool mayLight(const driver::Status& status) {
-    return (status.interlock & driver::interlock::kMayLight) == driver::interlock::kMayLight;
-}
-
 Finding interlock(const driver::Status& status) {
     if (status.state == driver::RigState::Fault) {
         return {"interlock",
@@ -169,7 +165,8 @@ Finding interlock(const driver::Status& status) {
                 "the rig is in fault: " + driver::statusName(status.fault),
                 "remove the cause; the next job clears the fault"};
     }
-    if (mayLight(status)) return {"interlock", Verdict::Ok, "closed", ""};
+    if (driver::interlock::mayLight(status.interlock))
+        return {"interlock", Verdict::Ok, "closed", ""};
     const bool seated = (status.interlock & driver::interlock::kSeated) != 0;
     return {"interlock",
             Verdict::Warn,
@@ -304,6 +301,10 @@ Finding counters(const Result<driver::Stats>& stats) {
 
 /// What the host has seen go wrong since it claimed the rig.
 Finding link(driver::Rig& rig) {
+    if (const auto& lost = rig.link().lost()) {
+        return {
+            "link", Verdict::Fail, lost->message, "plug it in again; then another cable or port"};
+    }
     const driver::LinkCounters& seen = rig.link().counters();
     std::string text;
     const auto add = [&](std::uint32_t n, const char* what) {
@@ -312,15 +313,19 @@ Finding link(driver::Rig& rig) {
     add(seen.badReports, "reports came damaged");
     add(seen.repeats, "commands repeated");
     add(seen.lostStatuses, "reports of the state lost");
-    add(seen.missedEvents, "events lost");
     add(seen.foreignAcks, "answers to another program");
     add(rig.link().reopens(), "times the reports fell silent and were opened anew");
     if (rig.anomalies().total() > 0)
         text += (text.empty() ? "" : ", ") + ("in the stream " + rig.anomalies().text());
+    if (!text.empty()) text = "all made good: " + text;
+    if (seen.missedEvents > 0) {
+        text += (text.empty() ? "" : "; ") + std::to_string(seen.missedEvents) +
+                " events were gone before they were read";
+    }
     if (text.empty()) return {"link", Verdict::Ok, "nothing lost since it was claimed", ""};
     return {"link",
             Verdict::Note,
-            "since it was claimed, all made good: " + text,
+            "since it was claimed, " + text,
             "where it was not unplugged meanwhile: another cable or port"};
 }
 
@@ -330,10 +335,11 @@ std::vector<Finding> examineClaimed(driver::Rig& rig, const RigProfile& profile)
     driver::RigLink& wire = rig.link();
     const auto clockBefore = readClock(wire);
     const auto status = rig.status();
-    const bool open = status && !mayLight(*status);
+    const bool open = status && !driver::interlock::mayLight(status->interlock);
     const Result<driver::Capture> dark =
         open ? Error{ErrorKind::Device, "the interlock is open"} : darkFrames(rig);
     const auto after = rig.status();
+    const bool opened = after && !driver::interlock::mayLight(after->interlock);
     const auto clockAfter = clockBefore ? readClockAgain(wire, *clockBefore) : clockBefore;
     const auto stats = wire.stats();
     std::vector<Finding> findings{identity(rig.identify()), clock(clockBefore, clockAfter)};
@@ -349,7 +355,7 @@ std::vector<Finding> examineClaimed(driver::Rig& rig, const RigProfile& profile)
                                       Verdict::Note,
                                       "no frame is valid while the interlock is open",
                                       ""}
-                            : selfTest(dark, after && !mayLight(*after)));
+                            : selfTest(dark, opened));
     findings.push_back(noise(dark, profile));
     findings.push_back(counters(stats));
     findings.push_back(link(rig));

@@ -14,7 +14,8 @@
 namespace gonio::daemon {
 
 /// identity, clock, temperature, interlock, self-test, noise, counters, link: one finding each, in
-/// this order. The window is the whole sensor's afterwards.
+/// this order. The window is the whole sensor's afterwards. A rig that is lost meanwhile is a
+/// failure of `link`.
 [[nodiscard]] std::vector<Finding> examineClaimed(driver::Rig& rig, const RigProfile& profile);
 
 /// The same of a rig that must not be asked now, by what it said last (empty: nothing yet); `why`

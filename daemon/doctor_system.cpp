@@ -123,7 +123,12 @@ Finding daemonReached(const Patient& patient) {
         const std::string seen = "goniod answers, pid " + std::to_string(patient.daemon->pid);
         const std::string& obstacle = patient.daemon->obstacle;
         if (obstacle.empty()) return {"daemon", Verdict::Ok, seen, ""};
-        return {"daemon", Verdict::Warn, seen + ", and is hindered: " + obstacle, "see there"};
+        const std::string& serial = patient.daemon->rigSerial;
+        return {"daemon",
+                Verdict::Warn,
+                seen + ", and is hindered: " + obstacle,
+                serial.empty() ? "see usb, and permission and holder of the rig"
+                               : "see claim of rig " + serial};
     }
     // What to do about it is said below.
     const std::string& why = patient.daemon.error().message;

@@ -83,7 +83,10 @@ Finding permission(const driver::UsbRig& rig) {
     const std::string rule = driver::permissionCure(rig.vendor, rig.product);
     const std::size_t at = rig.obstacle.find(": " + rule);
     if (at == std::string::npos)
-        return {"permission", Verdict::Fail, rig.obstacle, "see there; then plug it in again"};
+        return {"permission",
+                Verdict::Fail,
+                rig.obstacle,
+                "see hidraw-node and holder; then plug it in again"};
     return {"permission",
             Verdict::Fail,
             rig.obstacle.substr(0, at),
@@ -231,6 +234,21 @@ Finding holder(const Patient& patient, const Users& users) {
 }
 
 }  // namespace
+
+Finding unshown(const Patient& patient, const std::vector<Finding>& said) {
+    const bool all = patient.rigs &&
+                     std::none_of(patient.rigs->begin(), patient.rigs->end(), [](const auto& rig) {
+                         return rig.serial.empty();
+                     });
+    const bool claimed = std::none_of(said.begin(), said.end(), [](const Finding& one) {
+        return one.subject == "claim" && one.verdict == Verdict::Fail;
+    });
+    if (all && !claimed) return {"usb", Verdict::Fail, "it is not plugged in", "plug it in"};
+    return {"usb",
+            Verdict::Note,
+            "not shown to this program",
+            "in a container: hand /dev/bus/usb in; or ask where goniod runs"};
+}
 
 Finding protocolFinding(const std::string& protocol) {
     const std::string ours = "GRP/" + std::to_string(driver::kProtocolMajor) + "." +

@@ -15,6 +15,10 @@ namespace gonio::daemon {
 [[nodiscard]] std::vector<Finding> examineOutside(const Patient& patient,
                                                   const driver::UsbRig& rig);
 
+/// Of the daemon's rig on USB, where it is not among those that this program was shown; `said`: the
+/// daemon's findings of it. In a container that is no reason to call it unplugged.
+[[nodiscard]] Finding unshown(const Patient& patient, const std::vector<Finding>& said);
+
 /// Its version of the protocol ("GRP/1.0"; empty: not known) and ours.
 [[nodiscard]] Finding protocolFinding(const std::string& protocol);
 

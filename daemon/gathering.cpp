@@ -85,8 +85,9 @@ proc::MergeAccumulator Processing::accumulator() const {
     return {Band::R, darks, profile.noise, profile.response};
 }
 
-Gathering::Gathering(driver::Rig& rig, const Processing& processing)
+Gathering::Gathering(driver::Rig& rig, const Attendance& attendance, const Processing& processing)
     : rig_(rig),
+      attendance_(attendance),
       processing_(processing),
       brackets_{{{{}, processing.accumulator(), {}}, {{}, processing.accumulator(), {}}}} {
     captured_.signals.resize(rig.identify().ledAngles.size());
@@ -120,7 +121,7 @@ Result<void> Gathering::end() {
 
 Result<void> Gathering::settle() {
     if (!running_) return {};
-    Result<Processed> done = running_->await(rig_);
+    Result<Processed> done = running_->await(rig_, attendance_.alive);
     running_.reset();
     if (!done) return done.error();
     captured_.compute += done->compute;

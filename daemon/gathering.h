@@ -49,8 +49,8 @@ void note(const Frame& frame, Band band, std::vector<proc::RawExposure>& bracket
 
 class Gathering {
 public:
-    /// `rig` is borrowed.
-    Gathering(driver::Rig& rig, const Processing& processing);
+    /// `rig` and `attendance` are borrowed.
+    Gathering(driver::Rig& rig, const Attendance& attendance, const Processing& processing);
     Gathering(const Gathering&) = delete;
     Gathering& operator=(const Gathering&) = delete;
 
@@ -73,6 +73,7 @@ private:
     Result<void> settle();
 
     driver::Rig& rig_;
+    const Attendance& attendance_;
     const Processing processing_;
     std::array<Bracket, 2> brackets_;
     std::size_t states_ = 0;  ///< complete ones

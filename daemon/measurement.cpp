@@ -101,7 +101,8 @@ Result<LensRecord> takeLens(const Bench& bench, const PlaceMirror& place) {
     Result<proc::LensFit> fit =
         proc::fitLens(spots, middle, kPixelsPerDegree, bench.profile.wedgeTolerance);
     if (!fit) return fit.error();
-    const auto glare = alongside(bench.rig, [&] { return glareViews.spread(fit->map); });
+    const auto glare =
+        alongside(bench.rig, bench.attendance.alive, [&] { return glareViews.spread(fit->map); });
     if (!glare) return glare.error();
     return LensRecord{.fit = std::move(*fit),
                       .spots = static_cast<int>(spots.size()),
@@ -120,14 +121,16 @@ Result<Captured> capturePlacement(const Bench& bench,
     Result<proc::DarkLibrary> darks = takeDarks(bench, sequencer, darkFrames);
     if (!darks) return darks.error();
     const Stopwatch preparing(bench.clock);
-    const auto binning = alongside(bench.rig, [&] { return proc::Binning(lens, *window, kField); });
+    const auto binning = alongside(
+        bench.rig, bench.attendance.alive, [&] { return proc::Binning(lens, *window, kField); });
     if (!binning) return binning.error();
-    const auto glare = alongside(bench.rig, [&] {
+    const auto glare = alongside(bench.rig, bench.attendance.alive, [&] {
         return proc::GlareFilter(bench.glare.value_or(proc::GlareSpread{}), lens, *window, kField);
     });
     if (!glare) return glare.error();
     const Seconds prepared = preparing.elapsed();
     Gathering gathering(bench.rig,
+                        bench.attendance,
                         {.darks = *darks,
                          .binning = *binning,
                          .glare = *glare,

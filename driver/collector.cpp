@@ -18,6 +18,9 @@ bool isGone(const Error& error) {
     return error.deviceStatus == status::kFrameGone || error.deviceStatus == status::kBadRange;
 }
 
+/// So much is waiting to be sent that the rig takes no more.
+bool isFull(const Error& error) { return error.deviceStatus == status::kBusy; }
+
 }  // namespace
 
 Result<void> Collector::collect(const ArmedCapture& armed,
@@ -94,7 +97,7 @@ Result<Collector::Held> Collector::askForAll(const ArmedCapture& armed, CaptureP
     for (const MissingChunks& chunks : overdue(armed.expected.frames)) {
         if (!progress.waitsFor(chunks.frame)) continue;
         const auto sent = resend(chunks, armed.expected.captureId);
-        if (!sent && !isGone(sent.error())) return sent.error();
+        if (!sent && !isGone(sent.error()) && !isFull(sent.error())) return sent.error();
         if (sent) assembler_.askedFor(chunks);
         if (!sent) progress.redo(chunks.frame);
         ++(sent ? all.held : all.gone);
@@ -128,6 +131,10 @@ Result<void> Collector::askAgain(const MissingChunks& chunks,
         assembler_.askedFor(chunks);
         return {};
     }
+    if (isFull(sent.error())) {
+        assembler_.askedFor(chunks);  // once it is late again: what waits is read before
+        return {};
+    }
     if (!isGone(sent.error())) return sent;
     progress.giveUp(
         chunks.frame,
@@ -137,11 +144,13 @@ Result<void> Collector::askAgain(const MissingChunks& chunks,
 
 Result<void> Collector::resend(const MissingChunks& chunks, std::uint64_t captureId) {
     if (!canResend()) return Error{ErrorKind::Device, "the rig cannot resend", status::kFrameGone};
+    constexpr Nanoseconds kAtOnce{0};  // nothing is read while a rig is asked again
     const auto sent = link_.command(Op::Resend,
                                     encode(Resend{.captureId = captureId,
                                                   .frame = static_cast<std::uint16_t>(chunks.frame),
                                                   .firstChunk = chunks.first,
-                                                  .lastChunk = chunks.last}));
+                                                  .lastChunk = chunks.last}),
+                                    kAtOnce);
     if (!sent) return sent.error();
     return {};
 }

@@ -28,9 +28,10 @@ struct Interruption {
     bool sameBoot = true;
     int resent = 0;  ///< frames that the rig still held
     int redone = 0;  ///< frames that are exposed again, or were not exposed yet
-    /// Of the command that the loss cut off, if one was on its way: the rig has done it.
+    /// Of the command that the loss cut off: whether the rig has done it. Empty where none was on
+    /// its way, and where the rig's answer was damaged.
     std::optional<bool> cutOffDone{};
-    Stats stats{};  ///< the rig's own counters as it came back, since its boot
+    std::optional<Stats> stats{};  ///< the rig's own counters as it came back, since its boot
 };
 
 }  // namespace gonio::driver

@@ -12,7 +12,6 @@ using namespace std::chrono_literals;
 constexpr Nanoseconds kAckWait = 100ms;     // PROTOCOL.md 2, "Exactly once"
 constexpr int kSends = 3;                   // likewise
 constexpr Nanoseconds kPendingLimit = 10s;  // longer than any command of the page can take
-constexpr Nanoseconds kBusyLimit = 5s;      // a rig BUSY for longer will not become free
 constexpr Nanoseconds kBootLimit = 3s;
 // Reports that are silent are opened anew or lost by then (watched_transport.h): within 900 ms.
 constexpr Nanoseconds kStatusWait = 1200ms;
@@ -93,18 +92,24 @@ Result<void> RigLink::takeUp(const DeviceStrings& there) {
     return readEvents();
 }
 
-/// LAST_ACK tells of the command that was cut off.
+/// LAST_ACK tells of the command that was cut off, where it is whole and of this claim.
 Result<void> RigLink::recall(bool otherBoot) {
     const std::optional<Command> cutOff = std::exchange(unanswered_, std::nullopt);
     if (!cutOff) return {};
-    cutOffDone_ = false;
-    if (otherBoot) return {};
-    const Result<std::optional<Ack>> ack = storedAck(*cutOff);
-    if (!ack) {
-        unanswered_ = cutOff;  // lost again, before it could be asked
-        return ack.error();
+    if (otherBoot) {
+        cutOffDone_ = false;
+        return {};
     }
-    cutOffDone_ = *ack && (*ack)->status == status::kOk;
+    const auto report = wire_.getFeature(static_cast<std::uint8_t>(ReportId::LastAck));
+    if (!report && lost()) {
+        unanswered_ = cutOff;  // lost again, before it could be asked
+        return report.error();
+    }
+    if (!report) return {};
+    const Result<Ack> ack = decodeAck(*report, ReportId::LastAck);
+    if (!ack || ack->sessionLow != cutOff->sessionLow) return {};
+    const bool its = ack->sequence == cutOff->sequence && ack->op == cutOff->op;
+    if (!its || ack->status != status::kPending) cutOffDone_ = its && ack->status == status::kOk;
     return {};
 }
 
@@ -167,7 +172,7 @@ Result<void> RigLink::release() {
     return {};
 }
 
-Result<Arguments> RigLink::command(Op op, const Arguments& arguments) {
+Result<Arguments> RigLink::command(Op op, const Arguments& arguments, Nanoseconds patience) {
     // Put together only where it is said: a PING amid frames allocates nothing.
     const auto what = [&] { return opName(op) + " to " + rigName(strings()); };
     if (!claimed_) return Error{ErrorKind::Usage, what() + ": the rig has been released"};
@@ -178,7 +183,7 @@ Result<Arguments> RigLink::command(Op op, const Arguments& arguments) {
                           .op = op,
                           .arguments = arguments};
     unanswered_ = command;
-    const Nanoseconds giveUp = clock().now() + kBusyLimit;
+    const Nanoseconds giveUp = clock().now() + patience;
     for (int sends = 0; sends < kSends;) {
         const Result<std::optional<Ack>> ack = sendOnce(command);
         if (!ack) return ack.error().in(what());

@@ -12,6 +12,7 @@
 // rig; events, our counters and the clock go on. The rig's own are read again and never compared
 // with what they were before: they count since its boot, which may be another.
 
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -69,9 +70,14 @@ public:
     /// As if the rig were gone.
     void abandon(const Error& why) { (void)wire_.lose(why, WatchedTransport::Port::Leave); }
 
+    /// A rig that is BUSY for longer will not become free.
+    static constexpr Nanoseconds kBusyLimit = std::chrono::seconds(5);
     /// Sends one command and waits for its final ACK; its result where the status is OK. Other
-    /// statuses are errors that carry it (Busy for NOT_OWNER and BUSY, else Device).
-    Result<Arguments> command(Op op, const Arguments& arguments = {});
+    /// statuses are errors that carry it (Busy for NOT_OWNER and BUSY, else Device). A rig that is
+    /// BUSY is asked again for `patience`.
+    Result<Arguments> command(Op op,
+                              const Arguments& arguments = {},
+                              Nanoseconds patience = kBusyLimit);
     /// Takes what has come, and sends a PING when one is due.
     Result<void> keepAlive();
     /// The next bulk transfer, or nothing when `wait` has passed; the heartbeat is fed meanwhile.

@@ -14,8 +14,7 @@ Json orNull(const std::string& text) { return text.empty() ? Json(nullptr) : Jso
 Json orNull(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
 
 Json toJson(const driver::Status& rig) {
-    const bool may = (rig.interlock & driver::interlock::kMayLight) == driver::interlock::kMayLight;
-    return {{"interlock_closed", may},
+    return {{"interlock_closed", driver::interlock::mayLight(rig.interlock)},
             {"lit", rig.ledOn != 0},
             {"frames_made", rig.framesMade},
             {"uptime_s", static_cast<double>(rig.timeUs) * 1e-6},

@@ -60,17 +60,21 @@ std::vector<Finding> byDaemon(const CommonOptions& common, const DoctorOptions& 
     const auto answer =
         DaemonClient(common.socketPath()).get("/api/v1/doctor?hands_off=" + handsOff);
     std::vector<Finding> findings;
-    Result<void> read = answer ? understood(*answer,
-                                            [&](const Json& json) {
-                                                for (const Json& one : json.at("findings"))
-                                                    findings.push_back(findingIn(one));
-                                            })
-                               : Result<void>(answer.error());
+    const Result<void> read = answer ? understood(*answer,
+                                                  [&](const Json& json) {
+                                                      for (const Json& one : json.at("findings"))
+                                                          findings.push_back(findingIn(one));
+                                                  })
+                                     : Result<void>(answer.error());
     if (read) return findings;
+    // Another version knows other questions, or gives other answers.
+    const ErrorKind kind = read.error().kind;
+    const bool other = kind == ErrorKind::Usage || kind == ErrorKind::Internal;
     return {{"claim",
              Verdict::Note,
              "not claimed, goniod has it, and says: " + read.error().message,
-             "restart a goniod of another version than this program"}};
+             other ? "restart a goniod of another version than this program"
+                   : "once goniod answers, ask again"}};
 }
 
 std::vector<Finding> inside(const Patient& patient,
@@ -93,11 +97,11 @@ std::vector<Finding> inside(const Patient& patient,
     return examineInside(**transport, randomSession(), *profile);
 }
 
-/// A rig that no kernel shows.
-std::vector<Finding> examineUnplugged(const DaemonSeen& daemon) {
+/// The daemon's rig, which this program was not shown; `said`: the daemon's findings of it.
+std::vector<Finding> examineUnshown(const Patient& patient, const std::vector<Finding>& said) {
+    const DaemonSeen& daemon = *patient.daemon;
     const std::string goniod = "goniod (pid " + std::to_string(daemon.pid) + ")";
-    if (daemon.rigKind == "usb")
-        return {{"usb", Verdict::Fail, "it is not plugged in", "plug it in"}};
+    if (daemon.rigKind == "usb") return {unshown(patient, said)};
     const bool sim = daemon.rigKind == "sim";
     const std::string where = sim ? "simulated in the daemon" : "a recording in the daemon";
     return {{"holder", Verdict::Ok, goniod + ", the daemon that was asked", ""},
@@ -130,8 +134,9 @@ std::vector<Finding> allOf(const Patient& patient,
     }
     if (daemonsSeen) return findings;
     const std::string& serial = patient.daemon->rigSerial;
-    add(findings, examineUnplugged(*patient.daemon), serial);
-    add(findings, byDaemon(common, options), serial);
+    std::vector<Finding> said = byDaemon(common, options);
+    add(findings, examineUnshown(patient, said), serial);
+    add(findings, std::move(said), serial);
     return findings;
 }
 

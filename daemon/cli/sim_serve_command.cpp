@@ -8,6 +8,7 @@
 
 #include "daemon/cli/commands.h"
 #include "daemon/cli/output.h"
+#include "daemon/engine/sim_port.h"
 #include "daemon/sim_bench.h"
 #include "sim/faults/fault_script.h"
 #include "sim/usbip_server.h"
@@ -51,14 +52,8 @@ Result<void> check(const SimServeOptions& options) {
                      "sim serve: --serial " + *twice + " twice: each rig has its own"};
     }
     for (const std::string& serial : serials) {
-        const bool printable =
-            std::all_of(serial.begin(), serial.end(), [](char c) { return c > ' ' && c <= '~'; });
-        if (serial.empty() || serial.size() > 32 || !printable) {
-            return Error{
-                ErrorKind::Usage,
-                "sim serve: --serial '" + serial +
-                    "': a serial number has 1 to 32 printable ASCII characters and no blanks"};
-        }
+        if (const auto good = checkSerial(serial); !good)
+            return good.error().in("sim serve: --serial '" + serial + "'");
     }
     return {};
 }

@@ -18,9 +18,11 @@ Finding claimFinding(const EngineStatus& now) {
     const std::string because = now.obstacle.empty() ? "" : ": " + now.obstacle;
     const std::string meanwhile = now.job ? "; the job goes on by itself then" : "";
     if (has(now.state)) {
-        const bool good = now.obstacle.empty();
-        return {
-            "claim", good ? Verdict::Ok : Verdict::Warn, seen + because, good ? "" : "see there"};
+        if (now.obstacle.empty()) return {"claim", Verdict::Ok, seen, ""};
+        return {"claim",
+                Verdict::Warn,
+                seen + because,
+                "see interlock and temperature; where they are ok, plug it in again"};
     }
     return {"claim",
             Verdict::Fail,
@@ -52,6 +54,7 @@ std::vector<Finding> Engine::examineNow() {
     std::vector<Finding> findings =
         examineClaimed(*rig_, measuredProfile(store_, profile_, rigNow()));
     world_.alive();
+    if (const std::optional<Error> gone = rig_->link().lost()) lost(*gone);
     return whole(status(), std::move(findings));
 }
 

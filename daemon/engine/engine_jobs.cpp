@@ -60,7 +60,7 @@ Result<std::string> Engine::runAtDesk(const JobRequest& request, Monitor& monito
     const auto work = [&] { return recalibrate(desk, request); };
     if (!rig_) return guarded("recalibrate", work);
     return alongside(
-        *rig_, [this] { world_.alive(); }, work);
+        *rig_, [&monitor] { monitor.alive(); }, work);
 }
 
 /// How it ended.
@@ -75,15 +75,19 @@ void Engine::settle(JobRecord& job, const Result<std::string>& outcome, const Mo
     job.state = monitor.verdict();
 }
 
-/// After a job on it that did not succeed: it may be the reason.
+/// After a job on it: it may be the reason of one that did not succeed. What it says of itself
+/// afterwards is of after the job, also for tend(), which looks whether it is dark.
 void Engine::lookAfterRig(JobRecord& job) {
     if (!rig_) return;
-    if (const auto there = rig_->status(); !there) {
-        if (job.state == JobState::Failed) job.state = JobState::Interrupted;
-        lost(there.error());
-    } else if (const auto dark = rig_->darken(); !dark) {
-        log::warning(dark.error().message);
+    const bool done = job.state == JobState::Done;
+    if (!done) {
+        const auto dark = rig_->darken();
+        if (!dark && !rig_->link().lost()) log::warning(dark.error().message);
     }
+    const auto there = rig_->status();
+    if (there || done) return;
+    if (job.state == JobState::Failed) job.state = JobState::Interrupted;
+    lost(there.error());
 }
 
 void Engine::runPending(const std::stop_token& stop) {
@@ -102,7 +106,7 @@ void Engine::runPending(const std::stop_token& stop) {
     (void)monitor.interruptions();  // this job's, however it ended
     monitor_ = nullptr;
     settle(job.record, outcome, monitor);
-    if (!atDesk && !outcome) lookAfterRig(job.record);
+    if (!atDesk) lookAfterRig(job.record);
     if (job.record.error) log::warning(job.record.error->message);
     if (Result<void> kept = logbook_.endJob(job.record); !kept) log::error(kept.error().message);
     publishCalibrations();

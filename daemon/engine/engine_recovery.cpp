@@ -47,10 +47,9 @@ Result<driver::Transport*> Engine::comeBack(const Error& lost) {
     const bool first = !lostAt_;
     if (first) lostAt_ = world_.clock.now();
     if (!patientSince(*lostAt_)) return gaveUp(lost, world_.patience);
-    if (first) log::warning(monitor_->job() + ": " + lost.message + "; waiting for the rig");
     port_.close();
     publish([](EngineStatus& status) { status.rig.reset(); });
-    hinder(lost);
+    hinder(lost, first ? monitor_->job() + " waits for the rig: " : "");
     advance(EngineEvent::Lost, lost.message);
     while (patientSince(*lostAt_)) {
         world_.alive();
@@ -92,9 +91,8 @@ Result<void> Engine::awaitLight(const Error& why) {
     const Nanoseconds since = world_.clock.now();
     if (monitor_ == nullptr || !patientSince(since)) return why;
     const std::string wanted = explained(static_cast<std::uint16_t>(why.deviceStatus));
-    log::warning(monitor_->job() + ": " + wanted);
     while (patientSince(since)) {
-        hinder(Error{ErrorKind::Device, wanted, why.deviceStatus});
+        hinder(Error{ErrorKind::Device, wanted, why.deviceStatus}, monitor_->job() + " waits: ");
         advance(EngineEvent::Hindered, wanted);  // also after it was lost meanwhile
         world_.alive();
         if (Result<void> on = monitor_->goOn(); !on) return on;
@@ -114,10 +112,8 @@ Result<bool> Engine::mayLight() {
     if (Result<void> there = rig_->keepAlive(); !there) return there.error();
     const Result<driver::Status> said = rig_->status();
     if (!said) return false;  // lost: the next look finds it again, or not
-    publish([&](EngineStatus& status) { status.rig = *said; });
-    const bool closed =
-        (said->interlock & driver::interlock::kMayLight) == driver::interlock::kMayLight;
-    if (!closed) return false;
+    publishRig();
+    if (!driver::interlock::mayLight(said->interlock)) return false;
     if (said->state != driver::RigState::Fault) return true;
     return rig_->link().command(driver::Op::ClearFault).has_value();
 }

@@ -26,9 +26,10 @@ void Engine::connect() {
     hinder(why);
 }
 
-void Engine::hinder(const std::optional<Error>& obstacle) {
+/// `whom` stands before what is said, which is once for each obstacle.
+void Engine::hinder(const std::optional<Error>& obstacle, const std::string& whom) {
     const std::string text = obstacle ? obstacle->message : "";
-    if (!text.empty() && (!obstacle_ || obstacle_->message != text)) log::warning(text);
+    if (!text.empty() && (!obstacle_ || obstacle_->message != text)) log::warning(whom + text);
     obstacle_ = obstacle;
     publish([&](EngineStatus& status) { status.obstacle = text; });
 }
@@ -91,13 +92,25 @@ void Engine::lost(const Error& why) {
     nextTry_ = world_.clock.now() + kRescanning;
 }
 
-/// Feeds the heartbeat, and follows what the rig says of itself.
+/// What the rig has said last; of one that is lost nothing is known.
+void Engine::publishRig() {
+    if (!rig_) return;
+    const driver::RigLink& link = rig_->link();
+    const auto said = link.lost() ? std::nullopt : link.status();
+    publish([&](EngineStatus& status) { status.rig = said; });
+}
+
+/// Feeds the heartbeat, and follows what the rig says of itself. Without a job it is dark.
 void Engine::tend() {
     if (!rig_) return connect();
     if (Result<void> there = rig_->keepAlive(); !there) return lost(there.error());
+    publishRig();
     const std::optional<driver::Status> said = rig_->link().status();
-    publish([&](EngineStatus& status) { status.rig = said; });
     if (!said) return;
+    if (said->ledOn != 0) {
+        if (Result<void> dark = rig_->darken(); !dark) return hinder(dark.error());
+        (void)rig_->status();  // else the next look would see this STATUS again
+    }
     if (said->state == driver::RigState::Fault) {
         hinder(Error{ErrorKind::Device, explained(said->fault)});
         advance(EngineEvent::FaultSeen, driver::statusName(said->fault));

@@ -6,12 +6,27 @@
 
 namespace gonio::daemon {
 
-nlohmann::ordered_json toJson(const driver::Interruption& interruption) {
-    return {{"cause", interruption.cause},
-            {"lasted_s", Seconds(interruption.lasted).count()},
-            {"same_boot", interruption.sameBoot},
-            {"resent", interruption.resent},
-            {"redone", interruption.redone}};
+using Json = nlohmann::ordered_json;
+
+Json toJson(const driver::Interruption& interruption) {
+    Json json{{"cause", interruption.cause},
+              {"lasted_s", Seconds(interruption.lasted).count()},
+              {"same_boot", interruption.sameBoot},
+              {"resent", interruption.resent},
+              {"redone", interruption.redone}};
+    if (interruption.cutOffDone) json["cut_off_done"] = *interruption.cutOffDone;
+    if (const auto& stats = interruption.stats) {
+        json["rig_counters"] = Json{{"uptime_s", stats->uptimeS},
+                                    {"commands_done", stats->commandsDone},
+                                    {"replays", stats->replays},
+                                    {"frames_made", stats->framesMade},
+                                    {"frames_gone", stats->framesGone},
+                                    {"resends", stats->resends},
+                                    {"fifo_overruns", stats->fifoOverruns},
+                                    {"crc_rejects", stats->crcRejects},
+                                    {"lapses", stats->lapses}};
+    }
+    return json;
 }
 
 std::string described(const std::vector<driver::Interruption>& interruptions) {

@@ -9,7 +9,7 @@
 
 namespace gonio::daemon {
 
-/// cause, lasted_s, same_boot, resent, redone.
+/// cause, lasted_s, same_boot, resent, redone; cut_off_done and rig_counters where they are known.
 [[nodiscard]] nlohmann::ordered_json toJson(const driver::Interruption& interruption);
 /// "2.1 s, same boot, 1 frame sent again, 3 redone: the rig is gone; ..."
 [[nodiscard]] std::string described(const std::vector<driver::Interruption>& interruptions);

@@ -51,7 +51,7 @@ Result<void> Engine::Monitor::ask(const std::string& what) {
     const std::int64_t job = put(Question{number, what});
     engine_.tell("operator", dump({{"job", job}, {"question", number}, {"wanted", what}}), true);
     while (true) {
-        engine_.world_.alive();
+        alive();
         if (Result<void> there = engine_.rig_->keepAlive(); !there) return there;
         std::unique_lock lock(engine_.mutex_);
         engine_.asked_.wait_for(lock, kPause, [&] { return engine_.wish_ != Wish::None; });

@@ -25,7 +25,7 @@ public:
     Result<void> step(const std::string& what) override {
         alive();
         (void)interruptions();
-        engine_.tellNotices();
+        engine_.tellRecordingEnd();
         tell(what);
         return goOn();
     }
@@ -39,7 +39,10 @@ public:
         captured_ = true;
         engine_.advance(EngineEvent::Captured);
     }
-    void alive() override { engine_.world_.alive(); }
+    void alive() override {
+        engine_.world_.alive();
+        engine_.publishRig();
+    }
     Result<void> suspended(const Error& why) override;
     void setback(const Setback& setback) override;
     [[nodiscard]] const std::vector<driver::Interruption>& interruptions() override;

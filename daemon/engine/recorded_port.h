@@ -1,6 +1,7 @@
 #pragma once
 // A port of which all traffic with its rig is recorded (docs/recording.md).
 
+#include <atomic>
 #include <memory>
 #include <optional>
 
@@ -31,11 +32,12 @@ public:
     }
     [[nodiscard]] const driver::Replay* replay() const override { return inner_->replay(); }
     [[nodiscard]] std::string onlyForJobs() const override {
+        if (told_) return inner_->onlyForJobs();
         return "its traffic is recorded, and a replay would wait for the same questions";
     }
     /// The recording ends when its disk is full; the rig goes on.
-    [[nodiscard]] std::string takeNotice() override {
-        if (told_ || recorder_->ending().empty()) return inner_->takeNotice();
+    [[nodiscard]] std::string takeRecordingEnd() override {
+        if (told_ || recorder_->ending().empty()) return inner_->takeRecordingEnd();
         told_ = true;
         return recorder_->ending();
     }
@@ -50,7 +52,7 @@ private:
     std::unique_ptr<RigPort> inner_;
     std::unique_ptr<driver::Recorder> recorder_;
     std::optional<driver::RecordingTransport> transport_;
-    bool told_ = false;  ///< that the recording has ended
+    std::atomic<bool> told_{false};  ///< that the recording has ended
 };
 
 }  // namespace gonio::daemon

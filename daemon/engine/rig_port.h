@@ -21,6 +21,9 @@ namespace gonio::daemon {
 
 class SimPort;
 
+/// How often a rig that is not there is looked for (PROTOCOL.md 4).
+inline constexpr Nanoseconds kRescanning = std::chrono::milliseconds(500);
+
 /// A rig that could be used.
 struct RigListing {
     std::string kind;  ///< "sim", "usb" or "replay"
@@ -43,13 +46,13 @@ public:
     virtual void close() = 0;
     /// The recording that is played in a rig's place; null: there is a rig, or may be one. For the
     /// thread that owns the rig.
-    [[nodiscard]] virtual const driver::Replay* replay() const = 0;
+    [[nodiscard]] virtual const driver::Replay* replay() const { return nullptr; }
 
     /// Why only jobs may ask the rig; empty: anyone may. From any thread.
     [[nodiscard]] virtual std::string onlyForJobs() const { return {}; }
 
-    /// What happened to the port itself, once each; empty: nothing.
-    [[nodiscard]] virtual std::string takeNotice() { return {}; }
+    /// Why the recording of its traffic has ended before its time, once; empty: it has not.
+    [[nodiscard]] virtual std::string takeRecordingEnd() { return {}; }
 
     /// What lies under the rig: "white", "mirror", a file, ...; empty: only a person knows.
     [[nodiscard]] virtual std::string placed() const = 0;

@@ -106,12 +106,16 @@ Result<void> check(const PlaceRequest& request) {
             "': wanted black, white, zero, mirror, nothing, model:SPEC, sample:NAME or an "
             "absolute path");
     }
-    if (!request.serial) return {};
-    const std::string& serial = *request.serial;
+    const auto called = request.serial ? checkSerial(*request.serial) : Result<void>();
+    return called ? called : called.error().in("sim place");
+}
+
+Result<void> checkSerial(const std::string& serial) {
     const bool printable =
         std::all_of(serial.begin(), serial.end(), [](char c) { return c > ' ' && c <= '~'; });
     if (printable && !serial.empty() && serial.size() <= kLongestSerial) return {};
-    return refused("a serial is 1 to 32 printable characters");
+    return Error{ErrorKind::Usage,
+                 "a serial number has 1 to 32 printable ASCII characters and no blanks"};
 }
 
 Result<std::unique_ptr<SimPort>> SimPort::open(const fs::path& root, int cameraUsb) {
@@ -131,16 +135,33 @@ Result<std::vector<RigListing>> SimPort::list() {
                                     .obstacle = {}}};
 }
 
+/// At the cable, where time has passed since the last look.
+Result<std::unique_ptr<sim::InProcessDoor>> SimPort::lookAgain() {
+    sim::FaultyUsb& usb = door_->usb();
+    usb.advanceTo(usb.now() + kRescanning);
+    auto door = door_->openAgain();
+    if (!door) return door;
+    const std::string found = (*door)->strings().serial;
+    if (found == state_.serial) return door;
+    return Error{ErrorKind::NoRig,
+                 "rig " + state_.serial + " is not there; refused is " +
+                     (found.empty() ? "one without a serial number" : found) +
+                     ": plug the first in again"};
+}
+
 Result<driver::Transport*> SimPort::open() {
-    auto door = openSim(state_, store_, cameraUsb_);
+    const bool again = door_ != nullptr && !another_;
+    auto door = again ? lookAgain() : openSim(state_, store_, cameraUsb_);
     if (!door) return door.error();
     door_ = std::move(*door);
+    another_ = false;
+    open_ = true;
     if (faults_) door_->usb().play(*std::exchange(faults_, std::nullopt));
     return door_.get();
 }
 
 Result<bool> SimPort::placeMirror(const proc::Wedge& wedge) {
-    if (door_ == nullptr) return Error{ErrorKind::NoRig, "the simulated rig is not open"};
+    if (!open_) return Error{ErrorKind::NoRig, "the simulated rig is not open"};
     door_->device().place(
         {.role = sim::Role::Mirror, .surface = nullptr, .wedge = {wedge.aboutX, wedge.aboutY}});
     return true;
@@ -181,7 +202,8 @@ Result<bool> SimPort::place(const PlaceRequest& request) {
     }
     if (Result<void> kept = writeSimState(store_, next); !kept) return kept.error();
     adopt(std::move(next));
-    if (door_ != nullptr && !another) door_->device().place(std::move(*placement));
+    another_ = another_ || another;
+    if (door_ != nullptr && !another_) door_->device().place(std::move(*placement));
     return another;
 }
 

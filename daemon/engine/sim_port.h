@@ -1,6 +1,9 @@
 #pragma once
 // The simulated rig, in this process and in virtual time, and its own door: what lies under it. The
-// rig is kept in the store's sim.json over restarts.
+// rig is kept in the store's sim.json over restarts. It is there, with its fault script and what
+// lies under it, whether the port is open or not, until another rig is asked for. While it is
+// looked for, its time goes on from look to look, as far as the looks are apart. Another rig at its
+// cable is refused, and both serial numbers are named.
 
 #include <cstdint>
 #include <memory>
@@ -31,6 +34,8 @@ struct PlaceRequest {
 
 /// Usage error for what can never be placed.
 [[nodiscard]] Result<void> check(const PlaceRequest& request);
+/// Usage error unless a simulated rig may be called this.
+[[nodiscard]] Result<void> checkSerial(const std::string& serial);
 
 class SimPort : public RigPort {
 public:
@@ -41,8 +46,7 @@ public:
     [[nodiscard]] std::string_view kind() const override { return "sim"; }
     [[nodiscard]] Result<std::vector<RigListing>> list() override;
     [[nodiscard]] Result<driver::Transport*> open() override;
-    void close() override { door_.reset(); }
-    [[nodiscard]] const driver::Replay* replay() const override { return nullptr; }
+    void close() override { open_ = false; }
     [[nodiscard]] std::string placed() const override { return state_.placed; }
     Result<bool> placeMirror(const proc::Wedge& wedge) override;
     void describe(proc::SampleInfo& info) const override;
@@ -58,13 +62,16 @@ private:
     SimPort(Store store, SimState state, int cameraUsb)
         : store_(std::move(store)), state_(std::move(state)), cameraUsb_(cameraUsb) {}
     void adopt(SimState state);
+    [[nodiscard]] Result<std::unique_ptr<sim::InProcessDoor>> lookAgain();
 
     Store store_;
     SimState state_;
     int cameraUsb_;
-    std::mutex mutex_;                        ///< of the serial number, which list() reads
-    std::optional<sim::FaultScript> faults_;  ///< not played yet
-    std::unique_ptr<sim::InProcessDoor> door_;
+    std::mutex mutex_;                          ///< of the serial number, which list() reads
+    std::optional<sim::FaultScript> faults_;    ///< not played yet
+    std::unique_ptr<sim::InProcessDoor> door_;  ///< the last one to the rig; empty: there was none
+    bool open_ = false;
+    bool another_ = false;  ///< the next opening is another rig's
 };
 
 }  // namespace gonio::daemon

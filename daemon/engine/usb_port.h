@@ -17,7 +17,6 @@ public:
     [[nodiscard]] Result<std::vector<RigListing>> list() override;
     [[nodiscard]] Result<driver::Transport*> open() override;
     void close() override { transport_.reset(); }
-    [[nodiscard]] const driver::Replay* replay() const override { return nullptr; }
     [[nodiscard]] std::string placed() const override { return {}; }
     Result<bool> placeMirror(const proc::Wedge& /*wedge*/) override { return false; }
     void describe(proc::SampleInfo& info) const override { info.extra["rig"] = "USB"; }

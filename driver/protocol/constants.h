@@ -84,6 +84,8 @@ inline constexpr std::uint16_t kBoot = 1, kInterlockOpened = 2, kInterlockClosed
 namespace interlock {
 inline constexpr std::uint8_t kSeated = 1, kCoverClosed = 2, kModule = 4;
 inline constexpr std::uint8_t kMayLight = kSeated | kCoverClosed;
+/// By the bits of STATUS: the sample is seated, and the cover closed.
+[[nodiscard]] constexpr bool mayLight(std::uint8_t bits) { return (bits & kMayLight) == kMayLight; }
 }  // namespace interlock
 
 namespace validity {

@@ -192,6 +192,26 @@ TEST_F(DoctorInside, RigThatIsTooWarmOrOpenedInItsSelfTestNeedsNoOtherCable) {
     }
 }
 
+TEST_F(DoctorInside, RigThatIsLostMeanwhileIsAFailureOfItsLink) {
+    auto script = sim::FaultScript::parse("on frame 2 unplug");
+    ASSERT_TRUE(script) << script.error().message;
+    rig.door.usb().play(std::move(*script));
+    const Finding link = seen("link");
+    EXPECT_EQ(link.verdict, Verdict::Fail);
+    EXPECT_NE(link.seen.find("is gone"), std::string::npos) << link.seen;
+    EXPECT_NE(link.cure.find("plug it in"), std::string::npos);
+}
+
+TEST_F(DoctorInside, EventsThatWereMissedAreNotSaidToBeMadeGood) {
+    auto script = sim::FaultScript::parse("on frame 1 pile up 400 reports");
+    ASSERT_TRUE(script) << script.error().message;
+    rig.door.usb().play(std::move(*script));
+    const Finding link = seen("link");
+    EXPECT_EQ(link.verdict, Verdict::Note);
+    EXPECT_NE(link.seen.find("events were gone"), std::string::npos) << link.seen;
+    EXPECT_EQ(link.seen.find("events lost"), std::string::npos) << link.seen;
+}
+
 TEST_F(DoctorInside, CountersTellOfAHostThatIsTooSlowAndOfACableThatIsBad) {
     const auto with = [&](std::function<void(driver::Stats&)> how) {
         change<driver::Stats>([](const driver::Report& r) { return driver::decodeStats(r); },

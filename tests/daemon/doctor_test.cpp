@@ -103,6 +103,9 @@ TEST_F(Doctor, DaemonThatIsHinderedIsAWarningThatSaysWhy) {
     patient.daemon->obstacle = "two rigs: SIM-0042, SIM-0043";
     EXPECT_EQ(finding("daemon").verdict, Verdict::Warn);
     EXPECT_NE(finding("daemon").seen.find("SIM-0042, SIM-0043"), std::string::npos);
+    EXPECT_NE(finding("daemon").cure.find("see usb"), std::string::npos);
+    patient.daemon->rigSerial = "SIM-0042";
+    EXPECT_EQ(finding("daemon").cure, "see claim of rig SIM-0042");
 }
 
 TEST_F(Doctor, KernelWithoutHidrawIsAWarning) {
@@ -205,6 +208,7 @@ TEST_F(DoctorOfARig, AnotherObstacleIsSaidAsItIs) {
     rig.obstacle = "its HID interface has no hidraw node";
     EXPECT_EQ(seen("permission").verdict, Verdict::Fail);
     EXPECT_EQ(seen("permission").seen, rig.obstacle);
+    EXPECT_NE(seen("permission").cure.find("hidraw-node"), std::string::npos);
 }
 
 TEST_F(DoctorOfARig, AnotherMajorProtocolIsAFailureThatNamesBoth) {
@@ -266,6 +270,25 @@ TEST_F(DoctorOfARig, WhoReadsItsReportsOnlyIsNamedAndNotInTheWay) {
     EXPECT_EQ(inTheWay(patient, rig), "");
     open(323, "others", "/dev/hidraw4");  // of another device
     EXPECT_EQ(seen("holder").seen.find("others"), std::string::npos);
+}
+
+TEST_F(DoctorOfARig, DaemonsRigThatIsNotShownIsUnpluggedOnlyWhereNeitherHasIt) {
+    const auto verdict = [&](Verdict claim) {
+        const Finding one = unshown(patient, {{"claim", claim, "goniod's", ""}});
+        EXPECT_EQ(one.subject, "usb");
+        EXPECT_NE(one.cure, "");
+        return one.verdict;
+    };
+    patient.rigs = std::vector{rig};  // another one
+    EXPECT_EQ(verdict(Verdict::Fail), Verdict::Fail);
+    EXPECT_EQ(verdict(Verdict::Ok), Verdict::Note);
+    EXPECT_EQ(verdict(Verdict::Note), Verdict::Note) << "goniod did not say";
+    rig.serial.clear();
+    patient.rigs = std::vector{rig};
+    EXPECT_EQ(verdict(Verdict::Fail), Verdict::Note) << "it may be this one";
+    patient.rigs = Error{ErrorKind::NoRig, "libusb: no USB"};
+    EXPECT_EQ(verdict(Verdict::Fail), Verdict::Note) << "in a container";
+    EXPECT_EQ(verdict(Verdict::Ok), Verdict::Note);
 }
 
 TEST_F(DoctorOfARig, TheDaemonThatWasAskedMayHaveIt) {

@@ -138,9 +138,7 @@ private:
         for (int looks = 0; looks < 1000; ++looks) {
             const auto said = rig->status();
             if (!said) return said.error();
-            const bool closed =
-                (said->interlock & driver::interlock::kMayLight) == driver::interlock::kMayLight;
-            if (!closed) continue;
+            if (!driver::interlock::mayLight(said->interlock)) continue;
             if (said->state == driver::RigState::Fault &&
                 !rig->link().command(driver::Op::ClearFault))
                 continue;

@@ -99,7 +99,7 @@ TEST(ComebackOnSim, ACablePulledAtAnyCallCostsNoFrame) {
             EXPECT_GE(gap.lasted, 3s);
             resent += gap.resent;
             redone += gap.redone;
-            expectCounters(gap.stats, then);
+            expectCounters(gap.stats.value(), then);
         }
         expectNothingCounted(*rig);
         if (plugs.losses.empty() || HasFailure()) break;
@@ -129,8 +129,8 @@ TEST(ComebackOnSim, CountersBeginAnewWithAnotherBootAndNothingIsHeldAgainstIt) {
     const auto gaps = rig->takeInterruptions();
     ASSERT_EQ(gaps.size(), 1U);
     EXPECT_FALSE(gaps[0].sameBoot);
-    EXPECT_EQ(gaps[0].stats.framesMade, 0U);
-    EXPECT_EQ(gaps[0].stats.commandsDone, 0U);
+    EXPECT_EQ(gaps[0].stats.value().framesMade, 0U);
+    EXPECT_EQ(gaps[0].stats.value().commandsDone, 0U);
     EXPECT_EQ(rig->link().stats()->framesMade, 6U) << "of this boot";
     expectNothingCounted(*rig);
 }

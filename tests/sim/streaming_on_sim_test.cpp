@@ -150,5 +150,24 @@ TEST(Streaming, AReaderThatIsBusyForSecondsLosesNothing) {
     EXPECT_EQ(on.door.device().stats().framesMade, 20U) << "none was exposed twice";
 }
 
+// Frames that were asked for again wait in the rig until there is memory for a transfer, and it
+// takes no more requests than its RAM can serve: no reason to give the capture up.
+TEST(Streaming, RigThatCanQueueNoMoreResendsIsReadBeforeItIsAskedAgain) {
+    Opened on;
+    const auto undisturbed = on.rig->capture(dark(1, 16));
+    ASSERT_TRUE(undisturbed) << undisturbed.error().message;
+    for (const std::string lasting : {"1s", "2s", "3s", "4s"}) {
+        SCOPED_TRACE(lasting);
+        auto script = sim::FaultScript::parse("on chunk 9 memory for 0 transfers for " + lasting);
+        ASSERT_TRUE(script) << script.error().message;
+        on.door.usb().play(std::move(*script));
+        const auto seen = on.rig->capture(dark(1, 16));
+        ASSERT_TRUE(seen) << seen.error().message;
+        ASSERT_EQ(seen->size(), 16U);
+        for (std::size_t i = 0; i < 16; ++i)
+            EXPECT_EQ((*seen)[i].pixels, (*undisturbed)[i].pixels) << i;
+    }
+}
+
 }  // namespace
 }  // namespace gonio

@@ -10,6 +10,7 @@ namespace {
 
 using test::exitCodeOf;
 using test::Ran;
+using Json = nlohmann::json;
 
 constexpr int kInternal = 1, kUsage = 2, kNoRig = 3, kInterrupted = 8;
 
@@ -223,6 +224,34 @@ TEST_F(WithScriptedDaemon, EventOfAnotherVersionEndsTheFollowingWithAWord) {
     const Ran ran = calibrate();
     EXPECT_EQ(ran.exitCode, kInternal);
     EXPECT_NE(ran.err.find("not understood"), std::string::npos) << ran.err;
+}
+
+TEST_F(WithScriptedDaemon, DoctorsCureForADaemonThatDoesNotSayIsForItsReason) {
+    const auto claimed = [&](int status, const std::string& answer) {
+        daemon.play({.status = R"({"daemon":{"pid":5},"rig":{"kind":"sim","serial":"S",)"
+                               R"("obstacle":null}})",
+                     .doctor = answer,
+                     .doctorStatus = status});
+        const Ran ran = gonio({"--json", "doctor"});
+        const Json all = Json::parse(ran.out, nullptr, false);
+        for (const Json& one : all.value("findings", Json::array())) {
+            if (one["rig"] == "S" && one["subject"] == "claim") return one;
+        }
+        ADD_FAILURE() << ran.err << ran.out;
+        return Json{{"seen", ""}, {"cure", ""}};
+    };
+    const auto problem = [](const std::string& type) {
+        return R"({"type":"urn:gonio:problem:)" + type + R"(","detail":"because"})";
+    };
+    const auto isOfVersion = [](const Json& claim) {
+        return claim["cure"].get<std::string>().find("version") != std::string::npos;
+    };
+    EXPECT_TRUE(isOfVersion(claimed(404, problem("usage"))));
+    EXPECT_TRUE(isOfVersion(claimed(200, R"({"other":[]})")));
+    const Json busy = claimed(409, problem("busy"));
+    EXPECT_FALSE(isOfVersion(busy)) << busy;
+    EXPECT_NE(busy["cure"], "");
+    EXPECT_NE(busy["seen"].get<std::string>().find("because"), std::string::npos) << busy;
 }
 
 }  // namespace

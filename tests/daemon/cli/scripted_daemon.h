@@ -28,6 +28,9 @@ struct Script {
     std::string job = R"({"problem":null,"message":null,"result":null})";
     /// HTTP status of the answer to an answer.
     int proceedStatus = 202;
+    /// What the doctor is told, and its HTTP status.
+    std::string doctor = R"({"findings":[]})";
+    int doctorStatus = 200;
 };
 
 class ScriptedDaemon {
@@ -39,6 +42,10 @@ public:
                     [this](const auto&, auto& reply) { say(reply, script().status); });
         server_.Get("/api/v1/jobs/7",
                     [this](const auto&, auto& reply) { say(reply, script().job); });
+        server_.Get("/api/v1/doctor", [this](const auto&, auto& reply) {
+            reply.status = script().doctorStatus;
+            say(reply, script().doctor);
+        });
         server_.Get("/api/v1/events",
                     [this](const auto& asked, auto& reply) { stream(asked, reply); });
         server_.Post(".*", [this](const httplib::Request& asked, httplib::Response& reply) {

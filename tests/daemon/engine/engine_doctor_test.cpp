@@ -63,6 +63,49 @@ TEST_F(EngineDoctor, RigInAJobIsNotAskedAndNotesSayWhy) {
     port.cable.letGo();
 }
 
+TEST_F(EngineDoctor, CoverThatIsOpenedWhileAJobWaitsForAPersonIsSaid) {
+    port.mirrorPlacesItself = false;
+    RunningEngine engine(folder.path(), port);
+    engine.await(EngineState::Idle);
+    test::Watcher watcher(*engine);
+    const auto id = submit(engine);
+    watcher.until("operator");
+    EXPECT_EQ(examined(engine).at("interlock").verdict, Verdict::Ok);
+    port.cable.setInterlock(driver::interlock::kSeated);
+    EXPECT_TRUE(waitUntil([&] { return examined(engine).at("interlock").verdict != Verdict::Ok; }));
+    EXPECT_EQ(engine->status().state, EngineState::Running);
+    EXPECT_TRUE(engine->cancel(id));
+}
+
+TEST_F(EngineDoctor, RigThatIsLostWhileItIsExaminedIsAFailureAndNoLongerTheEngines) {
+    RunningEngine engine(folder.path(), port);
+    engine.await(EngineState::Idle);
+    port.cable.pullAtDarkeningAfter(1);
+    const auto seen = examined(engine);
+    ASSERT_TRUE(port.cable.pulled());
+    for (const char* subject : {"claim", "self-test", "link"}) {
+        EXPECT_EQ(seen.at(subject).verdict, Verdict::Fail) << subject;
+        EXPECT_NE(seen.at(subject).seen.find("the cable was pulled"), std::string::npos)
+            << seen.at(subject).seen;
+    }
+    EXPECT_EQ(engine->status().state, EngineState::Offline);
+}
+
+TEST_F(EngineDoctor, RigThatMustNotBeLitIsTheEnginesWithAWarningThatSaysWhereToLook) {
+    RunningEngine engine(folder.path(), port);
+    engine.await(EngineState::Idle);
+    test::Watcher watcher(*engine);
+    const auto id = submit(engine);
+    ASSERT_TRUE(waitUntil([&] { return port.cable.lit(); }));
+    port.cable.setInterlock(0);
+    watcher.until("job", {{"job", id}, {"state", "failed"}});
+    engine.await(EngineState::Fault);
+    const auto seen = examined(engine, true);
+    EXPECT_EQ(seen.at("claim").verdict, Verdict::Warn);
+    EXPECT_NE(seen.at("claim").cure.find("see interlock"), std::string::npos);
+    EXPECT_EQ(seen.at("interlock").verdict, Verdict::Fail);
+}
+
 TEST_F(EngineDoctor, HandsOffNothingIsAskedOfTheRig) {
     RunningEngine engine(folder.path(), port);
     engine.await(EngineState::Idle);

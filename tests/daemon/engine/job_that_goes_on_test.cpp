@@ -51,6 +51,12 @@ protected:
         }
         EXPECT_EQ(seen, wanted);
     }
+    static int timesIn(const std::string& text, const std::string& part) {
+        int times = 0;
+        for (std::size_t at = text.find(part); at != std::string::npos; ++times)
+            at = text.find(part, at + part.size());
+        return times;
+    }
     static inline const JobRequest kCheck{.kind = JobKind::VerifyWhite, .limit = 1};
 };
 
@@ -133,6 +139,7 @@ TEST_F(JobThatGoesOn, RigThatCannotBeOpenedYetIsTriedAgain) {
 }
 
 TEST_F(JobThatGoesOn, OpenInterlockSuspendsTheJobUntilItIsClosedAgain) {
+    testing::internal::CaptureStderr();
     RunningEngine engine(folder.path(), port, 600s);
     engine.await(EngineState::Idle);
     Watcher watcher(*engine);
@@ -148,6 +155,7 @@ TEST_F(JobThatGoesOn, OpenInterlockSuspendsTheJobUntilItIsClosedAgain) {
     watcher.until("rig", {{"state", "running"}});
     watcher.until("setback", {{"cause", "suspended"}});
     watcher.until("job", {{"job", id}, {"state", "done"}});
+    EXPECT_EQ(timesIn(testing::internal::GetCapturedStderr(), "seat it again"), 1);
     const Json document = documentOf(id);
     EXPECT_EQ(document["interruptions"].size(), 1U);
     expectSame(document, undisturbed());
@@ -166,6 +174,19 @@ TEST_F(JobThatGoesOn, SuspendedJobCanBeCancelledAndTheFaultIsLeft) {
     watcher.until("job", {{"job", id}, {"state", "cancelled"}});
     engine.await(EngineState::Fault);
     EXPECT_FALSE(port.cable.lit());
+}
+
+TEST_F(JobThatGoesOn, RigThatRefusedToGoDarkAfterTheLastFrameIsDarkAllTheSame) {
+    RunningEngine engine(folder.path(), port, 60s);
+    engine.await(EngineState::Idle);
+    Watcher watcher(*engine);
+    port.cable.refuseDarkeningAfter(2);  // the second is lit, and so are all others
+    const auto id = submit(engine, kCheck);
+    watcher.until("job", {{"job", id}, {"state", "done"}});
+    ASSERT_TRUE(port.cable.hasRefused());
+    EXPECT_TRUE(waitUntil([&] { return !port.cable.lit(); }));
+    engine.end();
+    EXPECT_FALSE(port.cable.litInTheEnd());
 }
 
 TEST_F(JobThatGoesOn, RigLostAfterTheLastFrameIsNotWaitedFor) {
@@ -230,6 +251,49 @@ TEST_F(JobThatAsks, GapIsBookedOnTheJobThatSurvivedItHoweverThatEnds) {
     for (const auto& event : watcher.until("operator", {{"job", next}}))
         EXPECT_NE(event.type, "interruption") << event.data;
     EXPECT_EQ(engine->status().job->interruptions, 0);
+}
+
+// The cable of the simulated rig, by a script: rule after rule, to one and the same rig.
+TEST_F(JobThatGoesOn, SimulatedRigComesBackAsItsScriptSays) {
+    auto sim = SimPort::open(folder.path());
+    ASSERT_TRUE(sim) << sim.error().message;
+    ASSERT_TRUE((*sim)->place({.what = "white"}));
+    auto script = sim::FaultScript::parse(
+        "on frame 3 unplug for 1s\n"
+        "on frame 8 lose power for 1s\n"
+        "on frame 62 plug as OTHER-1 for 1s\n");
+    ASSERT_TRUE(script) << script.error().message;
+    (*sim)->play(std::move(*script));
+    RunningEngine engine(folder.path(), **sim, 600s);
+    engine.await(EngineState::Idle);
+    Watcher watcher(*engine);
+    const auto id = submit(engine, kCheck);
+    bool refused = false;
+    ASSERT_TRUE(waitUntil([&] {
+        engine.clock().turn(50ms);
+        const EngineStatus now = engine->status();
+        refused = refused || (now.obstacle.find("SIM-0001") != std::string::npos &&
+                              now.obstacle.find("OTHER-1") != std::string::npos);
+        return !now.job;
+    }));
+    EXPECT_TRUE(refused) << "both are named";
+    std::vector<bool> sameBoot;
+    int redone = 0;
+    for (const EventRecord& event : watcher.until("job", {{"job", id}, {"state", "done"}})) {
+        const Json data = Json::parse(event.data);
+        if (event.type == "interruption") {
+            sameBoot.push_back(data["same_boot"]);
+            EXPECT_GE(data["lasted_s"], 1.0) << data;
+            EXPECT_LE(data["lasted_s"], 2.0) << data;
+        }
+        if (event.type == "setback") {
+            EXPECT_EQ(data["cause"], "new-boot");
+            ++redone;
+        }
+    }
+    EXPECT_EQ(sameBoot, (std::vector<bool>{true, false, true}));
+    EXPECT_EQ(redone, 1);
+    EXPECT_EQ(documentOf(id)["interruptions"].size(), 3U);
 }
 
 TEST_F(JobThatGoesOn, RigThatIsThereAndCannotBeClaimedIsWaitedForAsOneThatIsGone) {

@@ -120,6 +120,7 @@ TEST_F(RecordedJob, RecordingThatMayNotGrowEndsWithAnEventAndTheJobGoesOn) {
     const auto events = watcher.until("recording", {{"state", "ended"}});
     const std::string message = Json::parse(events.back().data)["message"];
     EXPECT_NE(message.find((folder / "traffic").string()), std::string::npos) << message;
+    EXPECT_EQ(recorded.onlyForJobs(), "") << "no replay would wait for it any more";
     for (int steps = 0; steps < 2; ++steps) {
         for (const EventRecord& event : watcher.until("progress", {{"job", id}}))
             EXPECT_NE(event.type, "recording") << "it is told once";

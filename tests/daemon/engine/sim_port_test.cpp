@@ -2,17 +2,21 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <limits>
 
 #include "daemon/profile.h"
+#include "driver/rig.h"
 #include "proc/formats/gonio_exr.h"
 #include "tests/support/sample_sets.h"
 #include "tests/support/temp_folder.h"
 
 namespace gonio::daemon {
 namespace {
+
+using namespace std::chrono_literals;
 
 class SimPortInStore : public testing::Test {
 protected:
@@ -271,6 +275,112 @@ TEST_F(SimPortInStore, MirrorGoesUnderAnOpenRigOnly) {
     EXPECT_TRUE(*placed) << "no person has to do it";
     port->close();
     EXPECT_FALSE(port->placeMirror(proc::mirrorWedges().front()));
+}
+
+/// Until its cable is pulled.
+void listenTo(driver::Transport& rig) {
+    for (int reports = 0; reports < 1000; ++reports) {
+        if (!rig.readInput(100ms)) return;
+    }
+    ADD_FAILURE() << "nobody has pulled its cable";
+}
+
+struct Look {
+    std::uint32_t boot = 0;
+    Image<std::uint16_t> picture;
+};
+
+/// At what lies under it, by the light of its first LED.
+Look lookAt(driver::Transport& transport) {
+    auto rig = driver::Rig::open(transport, 0x1122334455667788);
+    EXPECT_TRUE(rig) << rig.error().message;
+    if (!rig) return {};
+    EXPECT_TRUE(rig->configure({.x = 0, .y = 0, .size = rig->identify().sensor}));
+    auto taken = rig->capture({.planStep = 1,
+                               .led = 0,
+                               .levels = LedLevels::only(Band::G, 65535),
+                               .exposure = Microseconds(1000)});
+    EXPECT_TRUE(taken) << taken.error().message;
+    if (!taken) return {};
+    return {.boot = rig->bootId(), .picture = std::move(taken->frames.front().pixels)};
+}
+
+/// The next look for it that finds it is this one.
+driver::Transport* foundAtLook(int wanted, SimPort& port) {
+    port.close();
+    for (int look = 1; look < wanted; ++look) {
+        const auto missed = port.open();
+        EXPECT_TRUE(!missed && missed.error().kind == ErrorKind::NoRig) << "look " << look;
+    }
+    const auto there = port.open();
+    EXPECT_TRUE(there) << there.error().message;
+    return there ? *there : nullptr;
+}
+
+void play(SimPort& port, const std::string& text) {
+    auto script = sim::FaultScript::parse(text);
+    ASSERT_TRUE(script) << script.error().message;
+    port.play(std::move(*script));
+}
+
+TEST_F(SimPortInStore, RigThatIsPluggedInAgainIsTheSameWithWhatLiesUnderIt) {
+    const auto port = opened();
+    ASSERT_TRUE(port->place({.what = "mirror", .systematic = "none"}));
+    play(*port, "at 5s unplug for 1200ms\nat 20s lose power for 700ms");
+    const auto transport = port->open();
+    ASSERT_TRUE(transport) << transport.error().message;
+    ASSERT_TRUE(port->placeMirror(proc::mirrorWedges().back()));
+    const Look first = lookAt(**transport);
+    const auto pixels = first.picture.pixels();
+    ASSERT_GT(*std::max_element(pixels.begin(), pixels.end()), 1000) << "else nothing is seen";
+    listenTo(**transport);
+    driver::Transport* there = foundAtLook(3, *port);  // 500 ms each
+    ASSERT_NE(there, nullptr);
+    const Look unplugged = lookAt(*there);
+    EXPECT_EQ(unplugged.boot, first.boot);
+    EXPECT_EQ(unplugged.picture, first.picture);
+    listenTo(*there);
+    there = foundAtLook(2, *port);
+    ASSERT_NE(there, nullptr);
+    const Look powerless = lookAt(*there);
+    EXPECT_NE(powerless.boot, first.boot);
+    EXPECT_EQ(powerless.picture, first.picture);
+}
+
+TEST_F(SimPortInStore, AnotherRigAtItsCableIsRefusedAndBothAreNamed) {
+    const auto port = opened();
+    play(*port, "at 1s plug as OTHER-1 for 700ms");
+    const auto transport = port->open();
+    ASSERT_TRUE(transport) << transport.error().message;
+    listenTo(**transport);
+    port->close();
+    const auto refused = port->open();
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().kind, ErrorKind::NoRig);
+    for (const char* serial : {"SIM-0001", "OTHER-1"})
+        EXPECT_NE(refused.error().message.find(serial), std::string::npos)
+            << refused.error().message;
+    const auto there = port->open();
+    ASSERT_TRUE(there) << there.error().message;
+    EXPECT_EQ((*there)->strings().serial, "SIM-0001");
+}
+
+TEST_F(SimPortInStore, AnotherRigThatIsAskedForIsThereThoughTheFirstWasUnplugged) {
+    const auto port = opened();
+    play(*port, "at 1s unplug");
+    const auto transport = port->open();
+    ASSERT_TRUE(transport) << transport.error().message;
+    listenTo(**transport);
+    port->close();
+    EXPECT_FALSE(port->open());
+    const auto placed = port->place({.what = "white"});
+    ASSERT_TRUE(placed) << placed.error().message;
+    EXPECT_FALSE(*placed);
+    EXPECT_FALSE(port->open()) << "another surface is not another rig";
+    ASSERT_TRUE(port->place({.what = "white", .serial = "SIM-2"}));
+    const auto there = port->open();
+    ASSERT_TRUE(there) << there.error().message;
+    EXPECT_EQ((*there)->strings().serial, "SIM-2");
 }
 
 TEST_F(SimPortInStore, BrokenStateIsRefusedAndNamed) {

@@ -23,9 +23,9 @@ public:
     [[nodiscard]] driver::DeviceStrings strings() const override { return door_.strings(); }
     [[nodiscard]] const Clock& clock() const override { return door_.clock(); }
     Result<void> write(const driver::Report& report) override {
-        watchFor(report);
+        const driver::Report sent = watchFor(report);
         if (Result<void> there = pass(); !there) return there;
-        return door_.write(report);
+        return door_.write(sent);
     }
     Result<void> setFeature(const driver::Report& report) override {
         if (Result<void> there = pass(); !there) return there;
@@ -65,6 +65,9 @@ public:
     [[nodiscard]] bool pulled() const { return pulled_; }
     /// Is pulled when the LEDs are to go dark, after so many ARMs in all.
     void pullAtDarkeningAfter(int arms) { pullAfter_ = arms; }
+    /// Refuses to go dark, once, after so many ARMs in all.
+    void refuseDarkeningAfter(int arms) { refuseAfter_ = arms; }
+    [[nodiscard]] bool hasRefused() const { return hasRefused_; }
     /// A rig that is there and cannot be claimed: no Feature report is answered.
     void mute(bool on) { mute_ = on; }
     void setInterlock(std::uint8_t bits) { interlock_ = bits; }
@@ -100,16 +103,25 @@ public:
     [[nodiscard]] sim::Device& device() { return door_.device(); }
 
 private:
-    void watchFor(const driver::Report& report) {
-        const auto command = driver::decodeCommand(report);
-        if (!command) return;
+    /// What is sent in its place.
+    driver::Report watchFor(const driver::Report& report) {
+        auto command = driver::decodeCommand(report);
+        if (!command) return report;
         if (command->op == driver::Op::Arm) ++armed_;
         const bool darkens =
             command->op == driver::Op::SetLed && command->arguments == driver::Arguments{};
-        const int after = pullAfter_;
-        if (!darkens || after == 0 || armed_ < after) return;
-        pullAfter_ = 0;
-        pull();
+        if (!darkens) return report;
+        if (isDue(pullAfter_)) pull();
+        if (!isDue(refuseAfter_)) return report;
+        hasRefused_ = true;
+        command->arguments = driver::encode(driver::SetLed{.led = 99});  // which is not there
+        return driver::encode(*command);
+    }
+    /// Once.
+    bool isDue(std::atomic<int>& after) const {
+        if (after < 0 || armed_ < after) return false;
+        after = -1;
+        return true;
     }
     Result<void> pass() {
         std::unique_lock lock(mutex_);
@@ -122,6 +134,7 @@ private:
         wasPulled_ = false;
         if (const int bits = interlock_.exchange(-1); bits >= 0) {
             door_.device().setInterlock(static_cast<std::uint8_t>(bits));
+            door_.device().advanceTo(door_.device().now() + kChangeTold);
         }
         return {};
     }
@@ -132,9 +145,12 @@ private:
         wasLit_ = wasLit_ || lit_;
     }
 
+    static constexpr Nanoseconds kChangeTold = std::chrono::milliseconds(10);  // by STATUS
+
     sim::InProcessDoor door_{{}};
     std::atomic<bool> pulled_{false}, mute_{false}, lit_{false}, wasLit_{false};
-    std::atomic<int> interlock_{-1}, armed_{0}, pullAfter_{0};
+    std::atomic<bool> hasRefused_{false};
+    std::atomic<int> interlock_{-1}, armed_{0}, pullAfter_{-1}, refuseAfter_{-1};
     bool wasPulled_ = false;
     mutable std::mutex mutex_;  // of what follows
     std::condition_variable changed_;
@@ -161,7 +177,6 @@ public:
         return &cable;
     }
     void close() override {}
-    [[nodiscard]] const driver::Replay* replay() const override { return nullptr; }
     [[nodiscard]] std::string placed() const override { return {}; }
     Result<bool> placeMirror(const proc::Wedge& wedge) override {
         if (failsToPlace) throw std::runtime_error("no place for the mirror");
