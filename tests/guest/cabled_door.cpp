@@ -1,5 +1,6 @@
 #include "tests/guest/cabled_door.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <thread>
 
@@ -54,7 +55,9 @@ public:
         return {.allowed = ledger.transfersAllowed, .inFlight = ledger.transfersInFlight};
     }
     [[nodiscard]] int slack() const override { return 10; }  // an emulated machine
-    void pause(Nanoseconds time) override { std::this_thread::sleep_for(time); }
+    void pause(Nanoseconds time) override {
+        std::this_thread::sleep_for(std::max<Nanoseconds>(time, 5 * kLook));
+    }
     void with(const std::function<void(sim::FaultyUsb&)>& use) override { live_.with(use); }
 
 private:

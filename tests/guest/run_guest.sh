@@ -92,6 +92,7 @@ echo "image of $(($(stat -c %s "$work/initrd") >> 20)) MiB there after $(since)"
 
 # What costs an emulated processor most, and protects nobody here, is off.
 options="quiet panic=-1 nokaslr mitigations=off tsc=reliable init_on_alloc=0 transparent_hugepage=always"
+options+=" nowatchdog cryptomgr.notests i8042.nokbd i8042.noaux audit=0 randomize_kstack_offset=off"
 accel=tcg
 if [ -r /dev/kvm ] && [ -w /dev/kvm ] && grep -qE '^flags.* (vmx|svm)( |$)' /proc/cpuinfo; then accel=kvm; fi
 boot() {
