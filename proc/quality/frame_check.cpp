@@ -32,8 +32,8 @@ double levelsOf(const Shown& frame, const Shown& before, Band band) {
            std::max<double>(1, before.frame->levels[band]);
 }
 
-/// How many times the light of one picture another has, at least and at most. Of a higher level it
-/// is not known how many times at most, of a lower one not how many at least.
+/// How many times the light of one picture another has, at least and at most. Where light may come
+/// with any level, it is not known how many times at most of a higher one, nor at least of a lower.
 struct Factor {
     double least = 0, most = 0;
 };
