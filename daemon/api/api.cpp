@@ -153,17 +153,19 @@ Result<ApiReply> getRigs(const Call& call) {
     return reply("rigs", {{"rigs", listed(*rigs)}});
 }
 
-/// A doctor's visit may take as long as a rig that does not answer lets it.
-Result<ApiReply> getDoctor(const Call& call) {
-    const auto asked = call.request.query.find("hands_off");
-    const std::string handsOff = asked == call.request.query.end() ? "false" : asked->second;
-    if (handsOff != "true" && handsOff != "false") {
-        return Error{ErrorKind::Usage, "hands_off '" + handsOff + "': wanted true or false"};
-    }
-    auto findings = call.engine.examine(handsOff == "true");
+Result<ApiReply> doctorSays(Engine& engine, bool handsOff) {
+    auto findings = engine.examine(handsOff);
     if (!findings) return findings.error();
-    for (Finding& one : *findings) one.rig = call.engine.status().serial;
+    for (Finding& one : *findings) one.rig = engine.status().serial;
     return reply("doctor", {{"findings", listed(*findings)}});
+}
+
+Result<ApiReply> getDoctor(const Call& call) { return doctorSays(call.engine, true); }
+
+/// A visit exposes frames, and may take as long as a rig that does not answer lets it.
+Result<ApiReply> postDoctor(const Call& call) {
+    if (Result<void> good = nothingIn(call.request.body); !good) return good.error();
+    return doctorSays(call.engine, false);
 }
 
 Result<ApiReply> getSamples(const Call& call) {
@@ -409,6 +411,7 @@ constexpr std::array kRoutes{
     Route{"GET", "/api/v1/status", getStatus},
     Route{"GET", "/api/v1/rigs", getRigs},
     Route{"GET", "/api/v1/doctor", getDoctor},
+    Route{"POST", "/api/v1/doctor", postDoctor},
     Route{"GET", "/api/v1/sessions", getSessions},
     Route{"POST", "/api/v1/sessions", postSession},
     Route{"POST", "/api/v1/sessions/close", postSessionClose},

@@ -56,9 +56,9 @@ Finding findingIn(const Json& json) {
 
 /// What the daemon says of the rig that it has.
 std::vector<Finding> byDaemon(const CommonOptions& common, const DoctorOptions& options) {
-    const std::string handsOff = options.handsOff ? "true" : "false";
+    const DaemonClient client(common.socketPath());
     const auto answer =
-        DaemonClient(common.socketPath()).get("/api/v1/doctor?hands_off=" + handsOff);
+        options.handsOff ? client.get("/api/v1/doctor") : client.post("/api/v1/doctor", "{}");
     std::vector<Finding> findings;
     const Result<void> read = answer ? understood(*answer,
                                                   [&](const Json& json) {

@@ -133,7 +133,7 @@ TEST_F(ApiOnSim, StatusSaysWhatIsSo) {
 }
 
 TEST_F(ApiOnSim, DoctorSeesTheRigThatTheDaemonHas) {
-    const Json json = documentOf(get("doctor"), "doctor");
+    const Json json = documentOf(post("doctor", "{}"), "doctor");
     std::vector<std::string> subjects;
     for (const Json& finding : json["findings"]) {
         subjects.push_back(finding["subject"]);
@@ -152,9 +152,14 @@ TEST_F(ApiOnSim, DoctorSeesTheRigThatTheDaemonHas) {
                                           "counters",
                                           "link"};
     EXPECT_EQ(subjects, wanted);
-    const Json left = documentOf(get("doctor", {{"hands_off", "true"}}), "doctor");
-    EXPECT_EQ(left["findings"][6]["verdict"], "note") << left;
-    expectProblem(get("doctor", {{"hands_off", "perhaps"}}), 400, ErrorKind::Usage, {"perhaps"});
+    expectProblem(post("doctor", R"({"slowly":true})"), 400, ErrorKind::Usage, {"slowly"});
+}
+
+TEST_F(ApiOnSim, LookingAtTheDoctorsFindingsAsksNothingOfTheRig) {
+    const Json json = documentOf(get("doctor"), "doctor");
+    const Json& test = json["findings"][6];
+    EXPECT_EQ(test["verdict"], "note") << json;
+    EXPECT_NE(test["seen"].get<std::string>().find("not asked"), std::string::npos) << json;
 }
 
 TEST_F(ApiOnSim, RigsAreListed) {

@@ -42,12 +42,12 @@ public:
                     [this](const auto&, auto& reply) { say(reply, script().status); });
         server_.Get("/api/v1/jobs/7",
                     [this](const auto&, auto& reply) { say(reply, script().job); });
-        server_.Get("/api/v1/doctor", [this](const auto&, auto& reply) {
+        server_.Get("/api/v1/events",
+                    [this](const auto& asked, auto& reply) { stream(asked, reply); });
+        server_.Post("/api/v1/doctor", [this](const auto&, auto& reply) {
             reply.status = script().doctorStatus;
             say(reply, script().doctor);
         });
-        server_.Get("/api/v1/events",
-                    [this](const auto& asked, auto& reply) { stream(asked, reply); });
         server_.Post(".*", [this](const httplib::Request& asked, httplib::Response& reply) {
             heard(asked, reply);
         });
