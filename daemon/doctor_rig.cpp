@@ -3,30 +3,22 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
 
-#include "daemon/finest_binning.h"
+#include "daemon/clock_drift.h"
+#include "daemon/dark_pair.h"
 #include "proc/core/number_text.h"
 
 namespace gonio::daemon {
 namespace {
 
-constexpr int kReadings = 32;  // of the clock
-constexpr double kApart = 1;   // s, between two looks at it
-constexpr auto kPause = std::chrono::milliseconds(100);
-constexpr double kTick = 1e-6;                   // s, of the rig's clock
-constexpr double kMostDrift = 200e-6;            // two usual crystals differ by 100 ppm at most
-constexpr double kSlowRoundTrip = 0.02;          // s; a command is repeated after 0.1 s
-constexpr double kNearLimit = 2;                 // K
-constexpr Microseconds kExposure{1000};          // of a dark frame: its dark current is nothing
+constexpr double kTooSlow = 0.05;  // s, a round trip: a dead stream's many commands take 10 s
+constexpr double kNearLimit = 2;   // K
 constexpr double kNoisy = 1.3, kTooQuiet = 0.7;  // of the profile's noise
-constexpr double kOutlier = 5;                   // sigma: hot pixels have a noise of their own
 constexpr double kBlackTolerance = 1;            // DN
 constexpr double kUsualShare = 1e-3;             // of reports and chunks that come damaged
-constexpr std::uint64_t kOwnStep = (std::uint64_t{1} << 48) - 1;  // jobs count theirs from 1
 
 std::string ppm(double relative) { return fixed(relative * 1e6, 0) + " ppm"; }
 std::string milliseconds(double seconds) { return fixed(seconds * 1e3, 2) + " ms"; }
@@ -48,76 +40,26 @@ Finding identity(const driver::RigInfo& info) {
 
 // ---- clock ----
 
-/// The rig's clock beside the host's, s: means of readings, and what their scatter leaves open.
-struct ClockReading {
-    double host = 0, offset = 0, uncertainty = 0, roundTrip = 0;
-};
-
-/// Of those whose answer came quickly; a delay that all have cancels between two calls.
-Result<ClockReading> readClock(driver::RigLink& link) {
-    const auto now = [&] { return std::chrono::duration<double>(link.clock().now()).count(); };
-    std::vector<ClockReading> readings;
-    for (int i = 0; i < kReadings; ++i) {
-        const double before = now();
-        const auto answer = link.command(
-            driver::Op::SyncTime, driver::encodeU64(static_cast<std::uint64_t>(before * 1e6)));
-        if (!answer) return answer.error();
-        const double host = (before + now()) / 2;
-        readings.push_back({.host = host,
-                            .offset = static_cast<double>(driver::decodeU64(*answer)) * 1e-6 - host,
-                            .roundTrip = now() - before});
-    }
-    const auto quickest =
-        std::min_element(readings.begin(), readings.end(), [](const auto& a, const auto& b) {
-            return a.roundTrip < b.roundTrip;
-        });
-    const double most = 2 * quickest->roundTrip;
-    double n = 0;
-    ClockReading mean{.roundTrip = quickest->roundTrip};
-    std::erase_if(readings, [&](const ClockReading& one) { return one.roundTrip > most; });
-    for (const ClockReading& one : readings) {
-        n += 1;
-        mean.host += (one.host - mean.host) / n;
-        mean.offset += (one.offset - mean.offset) / n;
-    }
-    double squares = 0;
-    for (const ClockReading& one : readings) squares += std::pow(one.offset - mean.offset, 2);
-    mean.uncertainty = std::sqrt(squares / std::max(n - 1, 1.0) / n) + kTick;
-    return mean;
-}
-
-/// A second after the first, or later.
-Result<ClockReading> readClockAgain(driver::RigLink& link, const ClockReading& first) {
-    const auto then = std::chrono::duration<double>(first.host + kApart);
-    while (link.clock().now() < then) {
-        if (auto waited = link.readBulk(kPause); !waited) return waited.error();
-    }
-    return readClock(link);
-}
-
-Finding clock(const Result<ClockReading>& first, const Result<ClockReading>& last) {
-    if (!first || !last) {
+Finding clock(const Result<ClockDrift>& drift) {
+    if (!drift) {
         return {"clock",
                 Verdict::Fail,
-                (first ? last : first).error().message,
+                drift.error().message,
                 "plug the rig in again; bring its firmware up to date"};
     }
-    const double passed = last->host - first->host;
-    const double drift = (last->offset - first->offset) / passed;
-    const double uncertainty = 2 * std::hypot(first->uncertainty, last->uncertainty) / passed;
-    const std::string seen = "round trip " + milliseconds(last->roundTrip) + ", drift " +
-                             ppm(drift) + " +- " + ppm(uncertainty) + " in " + fixed(passed, 2) +
-                             " s";
-    if (std::abs(drift) - uncertainty > kMostDrift) {
+    const std::string seen = "round trip " + milliseconds(drift->roundTrip) + ", drift " +
+                             ppm(drift->relative) + " +- " + ppm(drift->uncertainty) + " in " +
+                             fixed(drift->passed, 2) + " s";
+    if (drift->beyondCrystals()) {
         return {"clock",
                 Verdict::Warn,
                 seen,
                 "exposures are counted by this clock: have the rig's oscillator looked at"};
     }
-    if (last->roundTrip > kSlowRoundTrip) {
+    if (drift->roundTrip > kSlowRoundTrip) {
         return {"clock", Verdict::Warn, seen, "plug it in without a hub; is the computer busy?"};
     }
-    if (uncertainty > kMostDrift) {
+    if (drift->uncertainty > kMostCrystalsDiffer) {
         return {"clock",
                 Verdict::Note,
                 seen + ": not enough to judge by",
@@ -176,12 +118,13 @@ Finding interlock(const driver::Status& status) {
 
 // ---- frames ----
 
-Result<driver::Capture> darkFrames(driver::Rig& rig) {
-    const driver::RigInfo info = rig.identify();
-    const auto shortest = std::max(kExposure, info.exposureMin);
-    const Window whole{.size = info.sensor, .binning = finestBinning(info.limits)};
-    if (auto done = rig.configure(whole); !done) return done.error();
-    return rig.capture({.planStep = kOwnStep, .exposure = shortest, .frames = 2, .keepLit = false});
+/// Why none is taken; empty: they are.
+std::string noFrames(const Result<driver::Status>& status, const Result<ClockLook>& look) {
+    if (status && !driver::interlock::mayLight(status->interlock))
+        return "no frame is valid while the interlock is open";
+    if (look && look->roundTrip > kTooSlow)
+        return "not taken: a command takes " + milliseconds(look->roundTrip) + "; see clock";
+    return "";
 }
 
 Finding selfTest(const Result<driver::Capture>& dark, bool opened) {
@@ -208,45 +151,11 @@ Finding selfTest(const Result<driver::Capture>& dark, bool opened) {
             "another cable or port: the stream comes damaged, and is repaired each time"};
 }
 
-/// Of one frame, in DN: from the difference of two, which leaves out what both have.
-struct DarkNoise {
-    double mean = 0, sigma = 0;
-    double step = 0;  ///< from the second to the first
-};
-
-DarkNoise noiseOf(const Frame& a, const Frame& b) {
-    const auto first = a.pixels.pixels();
-    const auto second = b.pixels.pixels();
-    DarkNoise noise;
-    double most = std::numeric_limits<double>::infinity();
-    for (int pass = 0; pass < 2; ++pass) {
-        double n = 0, sum = 0, level = 0, squares = 0;
-        for (std::size_t i = 0; i < first.size(); ++i) {
-            const double difference = double{1} * first[i] - second[i];
-            if (std::abs(difference - noise.step) > most) continue;
-            n += 1;
-            sum += difference;
-            squares += difference * difference;
-            level += (double{1} * first[i] + second[i]) / 2;
-        }
-        const double mean = sum / n;
-        const double spread = std::sqrt(std::max(squares / n - mean * mean, 0.0));
-        noise = {.mean = level / n, .sigma = spread / std::sqrt(2.0), .step = mean};
-        most = kOutlier * std::max(spread, 1.0);
-    }
-    return noise;
-}
-
 Finding noise(const Result<driver::Capture>& dark, const RigProfile& profile) {
     if (!dark) return {"noise", Verdict::Note, "no frame to judge", ""};
     const Frame& frame = dark->front();
-    const DarkNoise seen = noiseOf(frame, (*dark)[1]);
-    // A binned pixel is the mean of its members; it is rounded once.
-    const double electronsPerDn = profile.noise.electronsPerDn;
-    const double rounding = electronsPerDn * electronsPerDn / 12;
-    const double analogue = profile.noise.darkVariance(frame.exposure.seconds()) - rounding;
-    const int members = frame.window.binning * frame.window.binning;
-    const double wanted = std::sqrt(analogue / members + rounding) / electronsPerDn;
+    const DarkNoise seen = noiseOf(*dark);
+    const double wanted = expectedSigma(profile.noise, frame);
     const std::string text = fixed(seen.sigma, 2) + " DN, " + profile.name + " says " +
                              fixed(wanted, 2) + "; black " + fixed(seen.mean, 1) +
                              " DN, the rig says " + std::to_string(frame.blackLevel) + ", " +
@@ -333,16 +242,17 @@ Finding link(driver::Rig& rig) {
 
 std::vector<Finding> examineClaimed(driver::Rig& rig, const RigProfile& profile) {
     driver::RigLink& wire = rig.link();
-    const auto clockBefore = readClock(wire);
+    const auto clockBefore = lookAtClock(wire);
     const auto status = rig.status();
-    const bool open = status && !driver::interlock::mayLight(status->interlock);
+    const std::string inTheWay = noFrames(status, clockBefore);
     const Result<driver::Capture> dark =
-        open ? Error{ErrorKind::Device, "the interlock is open"} : darkFrames(rig);
+        inTheWay.empty() ? takeDarkPair(rig) : Error{ErrorKind::Device, inTheWay};
     const auto after = rig.status();
     const bool opened = after && !driver::interlock::mayLight(after->interlock);
-    const auto clockAfter = clockBefore ? readClockAgain(wire, *clockBefore) : clockBefore;
+    const Result<ClockDrift> drift =
+        clockBefore ? driftSince(*clockBefore, wire) : clockBefore.error();
     const auto stats = wire.stats();
-    std::vector<Finding> findings{identity(rig.identify()), clock(clockBefore, clockAfter)};
+    std::vector<Finding> findings{identity(rig.identify()), clock(drift)};
     if (status) {
         findings.push_back(temperature(*status, wire.limits()));
         findings.push_back(interlock(*status));
@@ -351,11 +261,8 @@ std::vector<Finding> examineClaimed(driver::Rig& rig, const RigProfile& profile)
         findings.push_back({"temperature", Verdict::Fail, why, "plug the rig in again"});
         findings.push_back({"interlock", Verdict::Note, "not known", ""});
     }
-    findings.push_back(open ? Finding{"self-test",
-                                      Verdict::Note,
-                                      "no frame is valid while the interlock is open",
-                                      ""}
-                            : selfTest(dark, opened));
+    findings.push_back(inTheWay.empty() ? selfTest(dark, opened)
+                                        : Finding{"self-test", Verdict::Note, inTheWay, ""});
     findings.push_back(noise(dark, profile));
     findings.push_back(counters(stats));
     findings.push_back(link(rig));

@@ -4,8 +4,12 @@
 # gonio_program_test(...): likewise, for tests that run the built programs and have no work of their own;
 # uses_programs(NAME) tells a test where they are (GONIO_PROGRAM, GONIO_DAEMON).
 
-# A test's own loops are short: what they call is optimised.
+# A test's own loops are short: what they call is optimised. Sanitizers make of each line many, which
+# takes longer to optimise than to run.
 set(GONIO_TEST_OPTIONS -O1)
+if(GONIO_SANITIZE)
+    set(GONIO_TEST_OPTIONS -O0)
+endif()
 set(GONIO_PROGRAM_TEST_OPTIONS -O0)
 
 add_library(gonio_options INTERFACE)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "proc/radiance/group_noise.h"
 
@@ -76,6 +77,13 @@ public:
     [[nodiscard]] double noiseOf(std::size_t group) const {
         return std::sqrt(figures_[group].floorVariance) / figures_[group].tau;
     }
+    /// What rounding adds to a whole frame of a group and to its dark frame, as a rate.
+    [[nodiscard]] double roundingOf(std::size_t group) const {
+        const double k = sums_.noise.electronsPerDn;
+        const double analogue = figures_[group].floorVariance - k * k / 12;
+        return std::numbers::sqrt2 * roundingErrorDn(std::sqrt(analogue) / k) * k /
+               figures_[group].tau;
+    }
 
 private:
     [[nodiscard]] std::size_t firstWithDarkOf(std::size_t group) const {
@@ -117,7 +125,8 @@ Eigen::VectorXd pattern(std::size_t frames, std::size_t first, std::size_t last)
 }
 
 /// What makes frames brighter than they say, without any change of the light: wrong scales of whole
-/// groups, and the wandering zero of each frame.
+/// groups, the wandering zero of each frame, and where binned pixels have too little noise to hide
+/// it, the rounding of all frames of a group.
 class NominalErrors {
 public:
     NominalErrors(const BracketSums& sums,
@@ -126,6 +135,7 @@ public:
         for (std::size_t g = 0; g < sums.groups.size(); ++g) {
             const Eigen::VectorXd frames = witnesses.framesOf(g);
             scales_.emplace_back(nominal.of(sums.groups[g]) * frames);
+            zeros_.emplace_back(witnesses.roundingOf(g) * frames);
         }
         for (std::size_t i = 0; i < sums.witnesses.size(); ++i) {
             const double u = nominal.zero * witnesses.noiseOf(sums.witnesses[i].group);
@@ -144,7 +154,7 @@ public:
 
 private:
     std::vector<Eigen::VectorXd> scales_;  // of each group: its u, in its frames
-    std::vector<Eigen::VectorXd> zeros_;   // of each frame
+    std::vector<Eigen::VectorXd> zeros_;   // of each frame, and of each group's
 };
 
 /// The most significant step or single frame that is worth a report.

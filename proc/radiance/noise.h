@@ -31,4 +31,12 @@ struct SensorNoise {
     }
 };
 
+/// Rms error, DN, that rounding to whole DN leaves in the mean of any number of samples of one
+/// light, over all lights: `sigmaDn` is the noise of a sample before it is rounded. sqrt(1/12)
+/// without noise, 0.08 at 0.23 DN, 3e-8 at the 0.92 DN of a sensor pixel. By the harmonics of the
+/// saw-tooth error, each damped by the noise's characteristic function (Widrow, Kollar and Liu,
+/// Statistical theory of quantization, IEEE Transactions on Instrumentation and Measurement 45,
+/// 1996).
+[[nodiscard]] double roundingErrorDn(double sigmaDn);
+
 }  // namespace gonio::proc

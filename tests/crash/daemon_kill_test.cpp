@@ -4,7 +4,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "tests/daemon/cli/running_daemon.h"
+#include "tests/daemon/cli/lab_bench.h"
 
 namespace gonio {
 namespace {
@@ -22,7 +22,7 @@ protected:
     }
     /// A rig with all its references, by a daemon that is gone again.
     void calibrate() const {
-        test::RunningDaemon daemon(gonio);
+        test::RunningDaemon daemon(gonio, rig);
         for (const std::string reference : {"mirror", "black", "white"}) {
             ask({"sim", "place", reference});
             ask({"calibrate", reference});
@@ -58,6 +58,7 @@ protected:
     }
 
     test::Program gonio;
+    const std::vector<std::string> rig = test::simExposing("[20, 320]", gonio);
 };
 
 /// How a daemon ends in the middle of a measurement, and what its client says then.
@@ -77,7 +78,7 @@ TEST_F(DaemonKill, NothingAcknowledgedIsLostAndTheNextDaemonGoesOn) {
                                  Ending{SIGKILL, 17, 128 + SIGKILL, kGone},
                                  Ending{SIGTERM, 5, 0, kInterrupted}}) {
         {
-            test::RunningDaemon daemon(gonio);
+            test::RunningDaemon daemon(gonio, rig);
             const pid_t client = measureUntil("torn", ending.steps);
             const auto begin = std::chrono::steady_clock::now();
             EXPECT_EQ(daemon.end(ending.signal), ending.daemonExit) << daemon.log();
@@ -86,7 +87,7 @@ TEST_F(DaemonKill, NothingAcknowledgedIsLostAndTheNextDaemonGoesOn) {
         }
         EXPECT_NE(ending.signal == SIGTERM, std::filesystem::exists(gonio / "store/goniod.sock"));
         const auto begin = std::chrono::steady_clock::now();
-        test::RunningDaemon next(gonio);
+        test::RunningDaemon next(gonio, rig);
         EXPECT_LT(std::chrono::steady_clock::now() - begin, 2s);
         const Json job = ask({"jobs"})["jobs"][0];
         EXPECT_EQ(job["state"], "interrupted") << job;
@@ -95,7 +96,7 @@ TEST_F(DaemonKill, NothingAcknowledgedIsLostAndTheNextDaemonGoesOn) {
         EXPECT_EQ(gonio({"info", "sample:torn"}).exitCode, 6) << "half a sample";
         EXPECT_EQ(ask({"status"})["rig"]["state"], "idle");
     }
-    test::RunningDaemon last(gonio);
+    test::RunningDaemon last(gonio, rig);
     ask({"measure", "torn", "--effort", "draft"});
     EXPECT_EQ(ask({"samples"})["samples"].size(), 2U);
 }

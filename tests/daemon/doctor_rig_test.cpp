@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <functional>
 
 #include "driver/rig.h"
@@ -21,11 +22,16 @@ public:
 
     [[nodiscard]] driver::DeviceStrings strings() const override { return door.strings(); }
     [[nodiscard]] const Clock& clock() const override { return *this; }
-    Result<void> write(const driver::Report& report) override { return door.write(report); }
+    Result<void> write(const driver::Report& report) override {
+        pass(requestTakes);
+        return door.write(report);
+    }
     Result<void> setFeature(const driver::Report& report) override {
+        pass(requestTakes);
         return door.setFeature(report);
     }
     [[nodiscard]] Result<driver::Report> getFeature(std::uint8_t id) override {
+        pass(requestTakes);
         auto report = door.getFeature(id);
         if (report && bend) bend(*report);
         return report;
@@ -33,6 +39,8 @@ public:
     [[nodiscard]] Result<std::optional<driver::Report>> readInput(Nanoseconds wait) override {
         auto report = door.readInput(wait);
         if (report && *report && bend) bend(**report);
+        if (report && *report && answerTakes && driver::decodeAck(**report))
+            pass(answerTakes(door.clock().now()));
         return report;
     }
     [[nodiscard]] Result<std::optional<driver::BulkBytes>> readBulk(Nanoseconds wait) override {
@@ -49,9 +57,13 @@ public:
     sim::InProcessDoor door;
     std::function<void(driver::Report&)> bend;
     bool streamDead = false;
-    double hostSlow = 0;  ///< the host's clock runs so much slower than the rig's
+    double hostSlow = 0;          ///< the host's clock runs so much slower than the rig's
+    Nanoseconds requestTakes{0};  ///< longer than it would
+    /// ACKs, likewise, by the time at which they come.
+    std::function<Nanoseconds(Nanoseconds)> answerTakes;
 
 private:
+    void pass(Nanoseconds time) { door.usb().advanceTo(door.clock().now() + time); }
     [[nodiscard]] Nanoseconds now() const override {
         const auto rig = door.clock().now();
         return rig - std::chrono::duration_cast<Nanoseconds>(rig * hostSlow);
@@ -116,6 +128,75 @@ TEST_F(DoctorInside, DriftingClockIsAWarningWithItsFigure) {
     const Finding clock = seen("clock");
     EXPECT_EQ(clock.verdict, Verdict::Warn);
     EXPECT_NE(clock.seen.find("drift 200"), std::string::npos) << clock.seen;  // 2004 ppm or near
+    EXPECT_NE(clock.seen.find(" in 5."), std::string::npos) << clock.seen;     // six looks
+    EXPECT_NE(clock.cure.find("oscillator"), std::string::npos) << clock.cure;
+}
+
+TEST_F(DoctorInside, ClockOfASoundRigIsLookedAtTwice) {
+    EXPECT_NE(seen("clock").seen.find(" in 1."), std::string::npos) << seen("clock").seen;
+}
+
+TEST_F(DoctorInside, ComputerThatGetsBusyAfterTheFirstLookIsNoDrift) {
+    using namespace std::chrono_literals;
+    // All of the delay is on the way back: the offset shifts by half of it.
+    rig.answerTakes = [](Nanoseconds now) { return now < 500ms ? 0ns : 1600us; };
+    const Finding clock = seen("clock");
+    EXPECT_NE(clock.verdict, Verdict::Warn) << clock.seen;
+    EXPECT_NE(clock.seen.find(" in 5."), std::string::npos) << clock.seen;  // it was suspected
+}
+
+TEST_F(DoctorInside, DriftIsTheLinksDoingWhereItIsSlow) {
+    using namespace std::chrono_literals;
+    rig.answerTakes = [](Nanoseconds now) { return now < 500ms ? 0ns : 50ms; };
+    const Finding clock = seen("clock");
+    EXPECT_EQ(clock.verdict, Verdict::Warn) << clock.seen;
+    EXPECT_NE(clock.cure.find("without a hub"), std::string::npos) << clock.cure;
+}
+
+TEST_F(DoctorInside, SlowLinkHoldsNobodyForLong) {
+    using namespace std::chrono_literals;
+    // Three ACKs of four are late, from the first look on or from the second.
+    const auto lateAcks = [](int first) {
+        return [first, seen = 0](Nanoseconds) mutable {
+            return ++seen > first && seen % 4 != 0 ? 300ms : 0ms;
+        };
+    };
+    const std::array<std::function<void(BentRig&)>, 4> links{
+        [](BentRig& slow) {
+            slow.requestTakes = 500ms;
+            slow.streamDead = true;  // which costs many commands more
+        },
+        [](BentRig& slow) {
+            slow.requestTakes = 40ms;
+            slow.streamDead = true;
+        },
+        [&](BentRig& slow) { slow.answerTakes = lateAcks(0); },
+        [&](BentRig& slow) { slow.answerTakes = lateAcks(40); }};
+    for (std::size_t i = 0; i < links.size(); ++i) {
+        BentRig another(config());
+        auto claimed = driver::Rig::open(another, kSession);
+        ASSERT_TRUE(claimed) << claimed.error().message;
+        links[i](another);
+        const Nanoseconds before = another.door.clock().now();
+        const auto findings = examineClaimed(*claimed, profile);
+        // A daemon that is busy with it for longer is killed by its watchdog.
+        EXPECT_LT(another.door.clock().now() - before, 10s) << "link " << i;
+        const Finding& clock = findings[1];
+        EXPECT_EQ(clock.verdict == Verdict::Warn, i < 2) << i << ": " << clock.seen;
+        EXPECT_EQ(clock.cure.find("oscillator"), std::string::npos) << i << ": " << clock.seen;
+        EXPECT_EQ(findings[4].verdict == Verdict::Note, i == 0) << i << ": " << findings[4].seen;
+    }
+}
+
+// A self-test that fails takes 7 s; two looks so far apart tell it by their round trips alone.
+TEST_F(DoctorInside, DriftIsSeenWithoutTimeForMoreLooks) {
+    rig.hostSlow = 2e-3;
+    rig.streamDead = true;
+    const Nanoseconds before = rig.door.clock().now();
+    const Finding clock = seen("clock");
+    EXPECT_LT(rig.door.clock().now() - before, std::chrono::seconds(10));
+    EXPECT_EQ(clock.verdict, Verdict::Warn) << clock.seen;
+    EXPECT_NE(clock.cure.find("oscillator"), std::string::npos) << clock.seen;
 }
 
 TEST_F(DoctorInside, HotRigIsAFailureAndAWarmOneAWarning) {

@@ -199,6 +199,55 @@ TEST(FrameResiduals, AWanderingZeroIsNoStep) {
     EXPECT_TRUE(reportWith({.zero = 0}).change);
 }
 
+/// As a rig sends it that bins 4 x 4 pixels: each the mean of 16, rounded a second time.
+Frame binnedByFour(const Frame& fine) {
+    constexpr int kBinning = 4;
+    Frame frame = fine;
+    const Size size = fine.pixels.size();
+    frame.pixels = Image<std::uint16_t>({size.width / kBinning, size.height / kBinning});
+    frame.window.binning = kBinning;
+    for (int y = 0; y < frame.pixels.height(); ++y) {
+        for (int x = 0; x < frame.pixels.width(); ++x) {
+            double sum = 0;
+            for (int j = 0; j < kBinning; ++j)
+                for (int i = 0; i < kBinning; ++i)
+                    sum += fine.pixels.at(kBinning * x + i, kBinning * y + j);
+            frame.pixels.at(x, y) =
+                static_cast<std::uint16_t>(std::lround(sum / (kBinning * kBinning)));
+        }
+    }
+    return frame;
+}
+
+// The noise of 16 pixels' mean is a quarter of a DN: a light of 0.3 DN is mostly rounded away, in
+// each pixel alike. Without binning the noise hides the rounding.
+TEST(FrameResiduals, RoundingOfBinnedPixelsIsNoStep) {
+    const std::vector<Shot> shots{{.seconds = 20e-6}, {.seconds = 200e-6}, {.seconds = 2e-3}};
+    const Size fine{512, 512}, size{128, 128};
+    const Image<double> light(fine, 0.3 * 2.6 / 20e-6);
+    for (const double step : {1.0, 1.6}) {
+        std::mt19937_64 random(43);
+        DarkLibrary darks;
+        for (const Shot& shot : shots) {
+            const Frame frame = binnedByFour(test::unexposed(shot, fine));
+            darks.add({.mean = Image<float>(size, static_cast<float>(test::kBlackDn)),
+                       .exposure = frame.exposure,
+                       .window = frame.window,
+                       .frames = 1});
+        }
+        MergeAccumulator accumulator(Band::G, darks, {});
+        for (const Shot& shot : shots) {
+            Image<double> seen = light;
+            for (double& pixel : seen.pixels()) pixel *= &shot == &shots.back() ? step : 1;
+            EXPECT_TRUE(accumulator.add(binnedByFour(test::takeScene(seen, shot, random))));
+        }
+        const auto state = mergeSums(accumulator.sums());
+        ASSERT_TRUE(state);
+        const FrameReport report = frameResiduals(accumulator.sums(), *state, 0.03);
+        EXPECT_EQ(report.change.has_value(), step > 1) << step;
+    }
+}
+
 TEST(FrameResiduals, OneFrameSaysNothing) {
     std::mt19937_64 random(34);
     const FrameReport report =

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace gonio::proc {
 namespace {
 
@@ -26,6 +28,29 @@ TEST(SensorNoise, IsNeverBelowThatOfADarkPixel) {
 TEST(SensorNoise, SaturationBeginsAtNinetyFivePerCentOfFullScale) {
     EXPECT_DOUBLE_EQ(kNoise.saturationDn(), 3800);
     EXPECT_DOUBLE_EQ(SensorNoise{}.saturationDn(), 3890.25);
+}
+
+/// By the normal distribution itself: the rms of E[round(x + noise)] - x over all x.
+double roundingErrorByIntegration(double sigma) {
+    constexpr int kLights = 500, kFarthest = 12;
+    const auto below = [&](double to) { return 0.5 * std::erfc(-to / sigma / std::sqrt(2.0)); };
+    double squares = 0;
+    for (int i = 0; i < kLights; ++i) {
+        const double x = (i + 0.5) / kLights;
+        double mean = 0;
+        for (int dn = -kFarthest; dn <= kFarthest; ++dn)
+            mean += dn * (below(dn + 0.5 - x) - below(dn - 0.5 - x));
+        squares += (mean - x) * (mean - x) / kLights;
+    }
+    return std::sqrt(squares);
+}
+
+TEST(RoundingError, IsThatOfTheNormalDistribution) {
+    EXPECT_NEAR(roundingErrorDn(0), std::sqrt(1 / 12.0), 1e-3);
+    for (const double sigma : {0.02, 0.1, 0.23, 0.4, 0.7})
+        EXPECT_NEAR(roundingErrorDn(sigma) / roundingErrorByIntegration(sigma), 1, 1e-4) << sigma;
+    EXPECT_LT(roundingErrorDn(SensorNoise{}.readNoiseElectrons / SensorNoise{}.electronsPerDn),
+              1e-7);
 }
 
 }  // namespace
