@@ -114,8 +114,8 @@ struct Call {
 
 using Handler = Result<ApiReply> (*)(const Call&);
 
-ApiReply reply(const std::string& schema, Json content, int status = 200) {
-    return {.status = status, .body = document(schema, std::move(content))};
+ApiReply reply(const std::string& schema, const Json& content, int status = 200) {
+    return {.status = status, .body = document(schema, content)};
 }
 
 template <class Record>
@@ -474,6 +474,7 @@ ApiReply problem(const Error& error, std::optional<int> status) {
 
 std::vector<ApiRoute> Api::routes() {
     std::vector<ApiRoute> list;
+    list.reserve(kRoutes.size());
     for (const Route& route : kRoutes) list.push_back({route.method, route.path});
     return list;
 }

@@ -110,7 +110,7 @@ Json toJson(const CalibrationRecord& calibration, const std::string& whyNot) {
             {"why_not", orNull(whyNot)}};
 }
 
-std::string document(const std::string& name, Json content) {
+std::string document(const std::string& name, const Json& content) {
     Json json{{"schema", "gonio/" + name + "/1"}};
     json.update(content);
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

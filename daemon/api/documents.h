@@ -19,6 +19,6 @@ namespace gonio::daemon {
                                             const std::string& whyNot);
 
 /// Text of a document with its schema in front: {"schema": "gonio/<name>/1", ...}.
-[[nodiscard]] std::string document(const std::string& name, nlohmann::ordered_json content);
+[[nodiscard]] std::string document(const std::string& name, const nlohmann::ordered_json& content);
 
 }  // namespace gonio::daemon
