@@ -178,7 +178,7 @@ Result<void> PlannedRun::takePilots() {
                              }
                              return {};
                          }});
-    if (!taken) return taken;
+    if (!taken) return taken.error();
     const Stopwatch waiting(bench_.clock);
     Result<proc::Plan> plan = planning->await(bench_.rig, bench_.attendance.alive);
     if (!plan) return plan.error();
@@ -198,7 +198,7 @@ Result<void> PlannedRun::learn(std::size_t state) {
     if (seeing_) {
         const Result<void> seen = seeing_->await(bench_.rig, bench_.attendance.alive);
         seeing_.reset();
-        if (!seen) return seen;
+        if (!seen) return seen.error();
     }
     if (Result<void> last = settle(); !last) return last;
     learning_.emplace([this, state]() -> Result<proc::StatePilot> {
@@ -264,7 +264,7 @@ Result<void> PlannedRun::takeDarks() {
              beginDark(shots[shot].shot.exposure);
              return {};
          }});
-    if (!taken) return taken;
+    if (!taken) return taken.error();
     darksBefore_.reset();
     std::map<Microseconds, const proc::DarkFrame*> held;
     if (rig_.darkFramesHeld > 0) {
@@ -371,6 +371,7 @@ Result<Captured> PlannedRun::takeStates() {
 
 Result<void> PlannedRun::takeList(Taking& now) {
     std::vector<KnownShot> shots;
+    shots.reserve(now.list.size());
     for (const Planned& planned : now.list) shots.push_back(planned.shot);
     return sequencer_.take(
         shots,

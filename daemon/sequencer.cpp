@@ -160,7 +160,7 @@ Result<void> Sequencer::take(std::span<const KnownShot> shots, const ShotSink& s
     for (std::size_t first = 0; first < shots.size();) {
         const Result<void> taken =
             brackets_.take(shots[first].state, [&] { return shoot(shots, requests, sink, first); });
-        if (!taken) return taken;
+        if (!taken) return taken.error();
         do ++first;
         while (first < shots.size() && shots[first].joins);
     }
@@ -188,6 +188,7 @@ Result<void> Sequencer::shoot(std::span<const KnownShot> shots,
 
 Result<proc::DarkLibrary> Sequencer::darks(int frames, const std::function<Result<void>()>& done) {
     std::vector<KnownShot> shots;
+    shots.reserve(profile_.exposures.size());
     for (const Microseconds exposure : profile_.exposures)
         shots.push_back({.state = {}, .shot = {.exposure = exposure}, .frames = frames});
     proc::DarkLibrary library;

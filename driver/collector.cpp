@@ -135,7 +135,7 @@ Result<void> Collector::askAgain(const MissingChunks& chunks,
         assembler_.askedFor(chunks);  // once it is late again: what waits is read before
         return {};
     }
-    if (!isGone(sent.error())) return sent;
+    if (!isGone(sent.error())) return sent.error();
     progress.giveUp(
         chunks.frame,
         range + ", " + statusName(static_cast<std::uint16_t>(sent.error().deviceStatus)));

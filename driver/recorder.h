@@ -43,7 +43,7 @@ private:
 };
 
 /// All that passes through it is recorded. Both are borrowed.
-class RecordingTransport : public Transport {
+class RecordingTransport final : public Transport {
 public:
     RecordingTransport(Transport& inner, Recorder& recorder);
     ~RecordingTransport() override;

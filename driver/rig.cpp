@@ -270,7 +270,7 @@ Result<void> Rig::collect(const ArmedCapture& armed, const Making& making) {
     Collector collector(*link_, assembler_, pixels_);
     while (true) {
         cameBack = false;
-        const auto done =  // by reference: a function of its own would allocate amid frames
+        auto done =  // by reference: a function of its own would allocate amid frames
             collector.collect(armed, progress_, exposed, std::ref(arrived));
         if (!cameBack) return done;
         if (!link_->lost()) {

@@ -62,7 +62,7 @@ Result<void> Engine::claim() {
     if (id == 0) {
         id = world_.randomId();
         const auto set = logbook_.set(key, std::to_string(static_cast<std::int64_t>(id)));
-        if (!set) return set;
+        if (!set) return set.error();
     }
     // The one that the recorded host had, in a recording.
     if (const auto* replay = port_.replay()) id = replay->session().value_or(id);

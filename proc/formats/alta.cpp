@@ -162,16 +162,16 @@ private:
     }
     bool dimensions(std::string_view value) {
         const std::vector<std::string_view> words = wordsIn(value);
-        const auto in = words.empty() ? std::nullopt : parseInteger(words[0]);
-        const auto out = words.size() < 2 ? std::nullopt : parseInteger(words[1]);
-        constexpr std::int64_t kMost = 1000;
-        if (words.size() != 2 || !in || !out || *in < 1 || *out < 1 || *in > kMost ||
-            *out > kMost) {
-            return fail("DIM " + shown(value) + ", wanted two numbers of columns");
-        }
-        inputs_ = static_cast<std::size_t>(*in);
-        outputs_ = static_cast<std::size_t>(*out);
-        return true;
+        const auto columns = [&](std::size_t i) -> std::size_t {  // 0: none
+            constexpr std::int64_t kMost = 1000;
+            const std::int64_t n = parseInteger(words[i]).value_or(0);
+            return n < 1 || n > kMost ? 0 : static_cast<std::size_t>(n);
+        };
+        const bool two = words.size() == 2;
+        inputs_ = two ? columns(0) : 0;
+        outputs_ = two ? columns(1) : 0;
+        return (inputs_ > 0 && outputs_ > 0) ||
+               fail("DIM " + shown(value) + ", wanted two numbers of columns");
     }
     void keep(std::string_view keyword, std::string_view value) {
         const bool quoted = value.size() >= 2 && value.front() == '"' && value.back() == '"';

@@ -1,5 +1,6 @@
 #include "proc/optics/lens_fit.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <map>

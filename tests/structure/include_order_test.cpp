@@ -136,6 +136,28 @@ TEST(IncludeOrder, HoldsInTheWholeTree) {
     EXPECT_GT(files, 20);
 }
 
+/// Eigen/Core declares these and leaves them out: without precompiled headers, which have them all,
+/// a file compiles without this include, and does not link.
+bool lacksGeometry(const std::string& text) {
+    static const std::regex uses(R"(\.cross\(|\bunitOrthogonal\(|\.inverse\(\)|\.determinant\(\))");
+    static const std::regex has(R"(#include <Eigen/(Geometry|Dense|LU|SVD|Eigenvalues)>)");
+    return std::regex_search(text, uses) && !std::regex_search(text, has);
+}
+
+TEST(EigenGeometry, IsIncludedWhereItIsUsed) {
+    const fs::path root = GONIO_SOURCE_DIR;
+    for (const char* top : {"proc", "driver", "sim", "daemon", "tests"}) {
+        for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
+            if (entry.path().extension() != ".cpp" && entry.path().extension() != ".h") continue;
+            std::stringstream text;
+            text << std::ifstream(entry.path()).rdbuf();
+            EXPECT_FALSE(lacksGeometry(text.str())) << entry.path();
+        }
+    }
+    EXPECT_TRUE(lacksGeometry("#include <Eigen/Core>\nauto n = a.cross(b);"));
+    EXPECT_FALSE(lacksGeometry("#include <Eigen/Geometry>\nauto n = a.cross(b);"));
+}
+
 TEST(IncludeOrder, SeesEachKindOfBackEdge) {
     const auto bad = [](const std::string& file, const std::string& line) {
         std::istringstream text(line + "\n");
