@@ -39,10 +39,27 @@ Result<ClockLook> readOnce(driver::RigLink& link) {
 
 /// At `then` (s, the host's), or at once where that has passed.
 Result<ClockLook> lookAt(double then, driver::RigLink& link) {
-    while (hostNow(link) < then) {
-        if (auto waited = link.readBulk(kPause); !waited) return waited.error();
+    for (double left = then - hostNow(link); left > 0; left = then - hostNow(link)) {
+        const auto pause = std::min<Nanoseconds>(kPause, Nanoseconds(std::llround(left * 1e9) + 1));
+        if (auto waited = link.readBulk(pause); !waited) return waited.error();
     }
     return lookAtClock(link);
+}
+
+/// Times the spread of the looks' times: how steep a line is through looks of no drift, where the
+/// round trip changes between any two of them as it does in these, and all of that on one way.
+double slopeOfAShift(std::span<const ClockLook> looks) {
+    double middle = 0;
+    for (const ClockLook& look : looks) {
+        middle += (look.host - looks.front().host) / static_cast<double>(looks.size());
+    }
+    double behind = 0, most = 0;
+    for (const ClockLook& look : looks) {
+        behind += look.host - looks.front().host - middle;
+        most = std::max(most, std::abs(behind));
+    }
+    const auto [quickest, slowest] = std::ranges::minmax_element(looks, {}, &ClockLook::furthest);
+    return most * (slowest->furthest - quickest->furthest);
 }
 
 }  // namespace
@@ -60,6 +77,8 @@ Result<ClockLook> lookAtClock(driver::RigLink& link) {
         return a.roundTrip < b.roundTrip;
     });
     ClockLook mean{.roundTrip = readings.front().roundTrip};
+    for (const ClockLook& one : readings)
+        mean.usual += one.roundTrip / static_cast<double>(readings.size());
     while (readings.back().roundTrip > 2 * mean.roundTrip) readings.pop_back();
     double n = 0, squares = 0;
     for (const ClockLook& one : readings) {
@@ -102,12 +121,14 @@ ClockDrift driftOf(std::span<const ClockLook> looks) {
     double uncertainty = 2 * std::sqrt(scatter) / spread;
     if (looks.size() > 2) {
         const double student = kStudent[std::min(looks.size() - 2, kStudent.size()) - 1];
-        uncertainty = std::max(uncertainty, student * std::sqrt(residuals / (n - 2) / spread));
+        const double byResiduals = student * std::sqrt(residuals / (n - 2) / spread);
+        uncertainty = std::max({uncertainty, byResiduals, slopeOfAShift(looks) / spread});
     }
+    const auto slowest = std::ranges::max_element(looks, {}, &ClockLook::roundTrip);
     return {.relative = slope,
             .uncertainty = uncertainty,
             .passed = looks.back().host - first.host,
-            .roundTrip = looks.back().roundTrip};
+            .roundTrip = slowest->roundTrip};
 }
 
 Result<ClockDrift> driftSince(const ClockLook& first, driver::RigLink& link) {

@@ -26,6 +26,7 @@ struct ClockLook {
     double uncertainty = 0;
     double furthest = 0;   ///< the offset is off by no more: half of their mean round trip
     double roundTrip = 0;  ///< the shortest
+    double usual = 0;      ///< the mean round trip of all readings, slow ones too
 };
 
 /// 32 readings; no more after 0.3 s, but four at least, however slow the link.
@@ -35,7 +36,7 @@ struct ClockDrift {
     double relative = 0;     ///< how much faster the rig's clock runs than the host's
     double uncertainty = 0;  ///< of that, 95 %
     double passed = 0;       ///< s, from the first look to the last
-    double roundTrip = 0;    ///< s, the shortest of the last look
+    double roundTrip = 0;    ///< s, of the slowest look
 
     /// By more than its uncertainty beyond what crystals differ.
     [[nodiscard]] bool beyondCrystals() const;
@@ -44,14 +45,15 @@ struct ClockDrift {
 /// The slope of the straight line through `looks`, each weighing the same. Its uncertainty comes
 /// from their residuals, by Student's t for looks - 2 degrees of freedom (of more than six looks:
 /// as of six, which is too wide); it is never less than twice what the scatter inside the looks
-/// gives. Two looks have no residuals: only that scatter. Precondition: two or more, not at the
+/// gives, nor than what a shift makes of it that is as large as their round trips allow, between
+/// any two. Two looks have no residuals: only the scatter. Precondition: two or more, not at the
 /// same time.
 [[nodiscard]] ClockDrift driftOf(std::span<const ClockLook> looks);
 
 /// A second look, one second after the first or later. Where the two are beyond crystals and the
 /// link is not slow, four more, one a second, of which none begins later than 6 s after the first.
-/// Where there is time for none of the four, the uncertainty is what the round trips of the two
-/// leave open, and surely holds the drift. The heartbeat is fed meanwhile.
+/// Where it is slow, or there is time for none of the four, the uncertainty is what the round trips
+/// of the two leave open, and surely holds the drift. The heartbeat is fed meanwhile.
 [[nodiscard]] Result<ClockDrift> driftSince(const ClockLook& first, driver::RigLink& link);
 
 }  // namespace gonio::daemon

@@ -31,12 +31,12 @@ DarkNoise noiseOf(const driver::Capture& pair) {
     for (int pass = 0; pass < 2; ++pass) {
         double n = 0, sum = 0, level = 0, squares = 0;
         for (std::size_t i = 0; i < first.size(); ++i) {
-            const double difference = double{1} * first[i] - second[i];
+            const double difference = static_cast<double>(first[i]) - second[i];
             if (std::abs(difference - noise.step) > most) continue;
             n += 1;
             sum += difference;
             squares += difference * difference;
-            level += (double{1} * first[i] + second[i]) / 2;
+            level += (static_cast<double>(first[i]) + second[i]) / 2;
         }
         const double mean = sum / n;
         const double spread = std::sqrt(std::max(squares / n - mean * mean, 0.0));
@@ -47,11 +47,8 @@ DarkNoise noiseOf(const driver::Capture& pair) {
 }
 
 double expectedSigma(const proc::SensorNoise& noise, const Frame& frame) {
-    // A binned pixel is the mean of its members; it is rounded once.
-    const double rounding = noise.electronsPerDn * noise.electronsPerDn / 12;
-    const double analogue = noise.darkVariance(frame.exposure.seconds()) - rounding;
     const int members = frame.window.binning * frame.window.binning;
-    return std::sqrt(analogue / members + rounding) / noise.electronsPerDn;
+    return std::sqrt(noise.darkVariance(frame.exposure.seconds(), members)) / noise.electronsPerDn;
 }
 
 }  // namespace gonio::daemon

@@ -13,14 +13,13 @@ namespace gonio::daemon {
 [[nodiscard]] Result<driver::Capture> takeDarkPair(driver::Rig& rig);
 
 /// In DN, without pixels whose difference is beyond 5 sigma: hot ones have a noise of their own.
-/// Where no pixel is left none of them is a number.
 struct DarkNoise {
     double mean = 0;   ///< of both frames, black level included
     double sigma = 0;  ///< of one frame's pixel, k = 1
     double step = 0;   ///< from the second frame's mean to the first's
 };
 
-/// Precondition: two frames of one size.
+/// Precondition: two frames of one size, not empty.
 [[nodiscard]] DarkNoise noiseOf(const driver::Capture& pair);
 
 /// What the sensor's `noise` says of one dark pixel of such a frame, DN, k = 1.

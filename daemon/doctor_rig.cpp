@@ -14,8 +14,8 @@
 namespace gonio::daemon {
 namespace {
 
-constexpr double kTooSlow = 0.05;  // s, a round trip: a dead stream's many commands take 10 s
-constexpr double kNearLimit = 2;   // K
+constexpr double kTooSlow = 0.05;                // s, a round trip: a dead stream takes 30 of them
+constexpr double kNearLimit = 2;                 // K
 constexpr double kNoisy = 1.3, kTooQuiet = 0.7;  // of the profile's noise
 constexpr double kBlackTolerance = 1;            // DN
 constexpr double kUsualShare = 1e-3;             // of reports and chunks that come damaged
@@ -122,8 +122,8 @@ Finding interlock(const driver::Status& status) {
 std::string noFrames(const Result<driver::Status>& status, const Result<ClockLook>& look) {
     if (status && !driver::interlock::mayLight(status->interlock))
         return "no frame is valid while the interlock is open";
-    if (look && look->roundTrip > kTooSlow)
-        return "not taken: a command takes " + milliseconds(look->roundTrip) + "; see clock";
+    if (look && look->usual > kTooSlow)
+        return "not taken: a command takes " + milliseconds(look->usual);
     return "";
 }
 

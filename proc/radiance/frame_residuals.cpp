@@ -79,10 +79,10 @@ public:
     }
     /// What rounding adds to a whole frame of a group and to its dark frame, as a rate.
     [[nodiscard]] double roundingOf(std::size_t group) const {
+        const GroupSums& of = sums_.groups[group];
         const double k = sums_.noise.electronsPerDn;
-        const double analogue = figures_[group].floorVariance - k * k / 12;
-        return std::numbers::sqrt2 * roundingErrorDn(std::sqrt(analogue) / k) * k /
-               figures_[group].tau;
+        const double sigma = std::sqrt(sums_.noise.analogueVariance(of.seconds) / sums_.members());
+        return std::numbers::sqrt2 * roundingErrorDn(sigma / k) * k / of.tau;
     }
 
 private:

@@ -9,8 +9,9 @@
 // noise of their dark frame (shared_noise.h). Changed light is looked for as a step (all frames
 // from one on are brighter) and as a single frame; the most significant one is reported that is at
 // least 5 standard uncertainties, as large as wanted, and beyond what wrong scales of whole
-// groups of frames, and the wandering zero of each, make of it at 95 % (group_scales.h): a step
-// between two groups of one frame each looks no different from that. By noise alone one in 2e6 of
+// groups of frames, the wandering zero of each (group_scales.h), and the rounding of binned pixels
+// of a group (noise.h) make of it at 95 %: a step between two groups of one frame each looks no
+// different from that. By noise alone one in 2e6 of
 // these is a false alarm, and of n frames 2 n - 3 are tried.
 //
 // With one frame, or without a pixel that two frames see, nothing can be said, and nothing is.
@@ -38,7 +39,7 @@ struct FrameResidual {
 struct LightChange {
     std::size_t first = 0, last = 0;
     BrightnessOffset offset;
-    double uNominal = 0;  ///< of the offset, by the nominal scales and zeros
+    double uNominal = 0;  ///< of the offset, by nominal scales, zeros and rounding
 };
 
 struct FrameReport {

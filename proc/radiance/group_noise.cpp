@@ -6,10 +6,8 @@ namespace gonio::proc {
 
 GroupFigures figuresOf(const GroupSums& group, const BracketSums& sums) {
     const double k = sums.noise.electronsPerDn;
-    const double rounding = k * k / 12;
-    const double analogue = sums.noise.darkVariance(group.seconds) - rounding;
     return {.tau = group.tau,
-            .floorVariance = analogue / sums.members() + rounding,
+            .floorVariance = sums.noise.darkVariance(group.seconds, sums.members()),
             .darkVariance = group.dark->varianceOfMean * k * k,
             .excessInDark = 1.0 / std::max(1, group.dark->frames),
             .single = group.frames == 1};

@@ -32,10 +32,8 @@ struct Estimate {
     std::size_t freedom = 0;
 };
 
-/// A binned pixel is the mean of its members: shot, dark and read noise shrink, rounding does not.
 double sampleVariance(double electrons, double seconds, const SensorNoise& noise, int members) {
-    const double rounding = noise.electronsPerDn * noise.electronsPerDn / 12;
-    return (noise.variance(electrons, seconds) - rounding) / members + rounding;
+    return std::max(electrons, 0.0) / members + noise.darkVariance(seconds, members);
 }
 
 /// What the pixel reads in the dark above the others: 0 unless it is hot.

@@ -161,13 +161,14 @@ TEST_F(DoctorInside, SlowLinkHoldsNobodyForLong) {
             return ++seen > first && seen % 4 != 0 ? 300ms : 0ms;
         };
     };
-    const std::array<std::function<void(BentRig&)>, 4> links{
+    const std::array<std::function<void(BentRig&)>, 5> links{
+        [](BentRig& slow) { slow.requestTakes = 52ms; },
         [](BentRig& slow) {
             slow.requestTakes = 500ms;
             slow.streamDead = true;  // which costs many commands more
         },
         [](BentRig& slow) {
-            slow.requestTakes = 40ms;
+            slow.requestTakes = 45ms;
             slow.streamDead = true;
         },
         [&](BentRig& slow) { slow.answerTakes = lateAcks(0); },
@@ -182,9 +183,11 @@ TEST_F(DoctorInside, SlowLinkHoldsNobodyForLong) {
         // A daemon that is busy with it for longer is killed by its watchdog.
         EXPECT_LT(another.door.clock().now() - before, 10s) << "link " << i;
         const Finding& clock = findings[1];
-        EXPECT_EQ(clock.verdict == Verdict::Warn, i < 2) << i << ": " << clock.seen;
+        EXPECT_EQ(clock.verdict == Verdict::Warn, i < 3) << i << ": " << clock.seen;
         EXPECT_EQ(clock.cure.find("oscillator"), std::string::npos) << i << ": " << clock.seen;
-        EXPECT_EQ(findings[4].verdict == Verdict::Note, i == 0) << i << ": " << findings[4].seen;
+        const bool usuallySlow = i < 2 || i == 3;
+        EXPECT_EQ(findings[4].verdict == Verdict::Note, usuallySlow)
+            << i << ": " << findings[4].seen;
     }
 }
 

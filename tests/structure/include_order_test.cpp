@@ -146,14 +146,17 @@ bool lacksGeometry(const std::string& text) {
 
 TEST(EigenGeometry, IsIncludedWhereItIsUsed) {
     const fs::path root = GONIO_SOURCE_DIR;
+    int files = 0;
     for (const char* top : {"proc", "driver", "sim", "daemon", "tests"}) {
         for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
             if (entry.path().extension() != ".cpp" && entry.path().extension() != ".h") continue;
             std::stringstream text;
             text << std::ifstream(entry.path()).rdbuf();
             EXPECT_FALSE(lacksGeometry(text.str())) << entry.path();
+            ++files;
         }
     }
+    EXPECT_GT(files, 20);
     EXPECT_TRUE(lacksGeometry("#include <Eigen/Core>\nauto n = a.cross(b);"));
     EXPECT_FALSE(lacksGeometry("#include <Eigen/Geometry>\nauto n = a.cross(b);"));
 }

@@ -1,6 +1,7 @@
 // Whole measurements as a user makes them: calibrate, measure, look, export, on the simulated rig.
 
 #include <cmath>
+#include <cstdlib>
 #include <map>
 #include <nlohmann/json.hpp>
 
