@@ -6,9 +6,9 @@
 mount -t proc none /proc
 mount -t sysfs none /sys
 mount -t devtmpfs none /dev
-mount -t tmpfs none /tmp
-mkdir -p /run
-export PATH=/bin LD_LIBRARY_PATH=/lib HOME=/tmp
+mkdir -p /run /tmp /scratch
+mount -t tmpfs none /scratch  # not over /tmp, where the scripts lie of a source folder under /tmp
+export PATH=/bin LD_LIBRARY_PATH=/lib HOME=/scratch TMPDIR=/scratch
 # A page that is given back and asked for again costs an emulated processor much.
 export GLIBC_TUNABLES=glibc.malloc.mmap_threshold=33554432:glibc.malloc.trim_threshold=268435456
 for module in /modules/*.ko; do insmod "$module" || echo "GUEST insmod $module failed"; done
