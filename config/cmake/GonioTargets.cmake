@@ -4,12 +4,8 @@
 # gonio_program_test(...): likewise, for tests that run the built programs and have no work of their own;
 # uses_programs(NAME) tells a test where they are (GONIO_PROGRAM, GONIO_DAEMON).
 
-# A test's own loops are short: what they call is optimised. Sanitizers make of each line many, which
-# takes longer to optimise than to run.
+# A test's own loops are short: what they call is optimised.
 set(GONIO_TEST_OPTIONS -O1)
-if(GONIO_SANITIZE)
-    set(GONIO_TEST_OPTIONS -O0)
-endif()
 set(GONIO_PROGRAM_TEST_OPTIONS -O0)
 
 add_library(gonio_options INTERFACE)
